@@ -22,7 +22,7 @@ IN_FLIGHT = (1, 64)
 
 
 class Span(NamedTuple):
-    """How long to measure."""
+    """Length of a measurement."""
 
     rounds: int
     """Rounds of all peers."""
@@ -31,10 +31,10 @@ class Span(NamedTuple):
 
 
 class Worker:
-    """A process on a core of its own, where there are several."""
+    """A process, on a separate core if there are several."""
 
     def __init__(self, core: int, *words: str) -> None:
-        """Starts it and waits for what it says first."""
+        """Starts it and waits for its first line."""
         pinned = ["taskset", "-c", str(core)] if (os.cpu_count() or 1) > 1 and shutil.which("taskset") else []
         command = [*pinned, sys.executable, str(Path(__file__).with_name("peer.py")), *words]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # noqa: S603
@@ -45,14 +45,14 @@ class Worker:
         return json.loads(self.process.stdout.readline())
 
     def ask(self, value: Any) -> Any:
-        """Asks, and waits for the answer."""
+        """Sends a value, and waits for the answer."""
         assert self.process.stdin is not None
         self.process.stdin.write(json.dumps(value) + "\n")
         self.process.stdin.flush()
         return self._answer()
 
     def __enter__(self) -> Worker:
-        """Itself."""
+        """Returns itself."""
         return self
 
     def __exit__(
@@ -70,7 +70,7 @@ class Pair(NamedTuple):
     caller: Worker
 
     def round(self, in_flight: int, calls: int) -> dict[str, float]:
-        """One round: how long it took, and what that cost both processes."""
+        """Runs one round. Returns its duration and the CPU time of both processes."""
         self.server.ask("begin")
         self.caller.ask("begin")
         found: dict[str, float] = self.caller.ask({"in_flight": in_flight, "calls": calls})
@@ -79,7 +79,7 @@ class Pair(NamedTuple):
 
 
 def calls(span: Span) -> list[dict[str, Any]]:
-    """What calls cost with each number in flight, and with each peer."""
+    """Returns the cost of calls for each number in flight, and each peer."""
     with ExitStack() as stack:
         pairs: dict[str, Pair] = {}
         for name in PEERS:
@@ -102,7 +102,7 @@ def _scenario(pairs: dict[str, Pair], in_flight: int, span: Span) -> list[dict[s
     for name, of in rounds.items():
         middle = {figure: median(one[figure] for one in of) for figure in ("rate", "p50", "p99", "cpu")}
         if PEERS[name]().windows and in_flight > 1:
-            # A window of the floor is no call: it has no time of its own.
+            # A window of the floor is not a single call, so it has no latency.
             middle.update(p50=None, p99=None)  # type: ignore[call-overload]
         found.append({"name": name, **middle})
     return found

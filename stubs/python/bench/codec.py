@@ -1,4 +1,4 @@
-"""Frames to typed messages and back, beside `json.loads` and `json.dumps` with MD5 over the same bytes."""
+"""Frames to typed messages and back, compared with `json.loads` and `json.dumps` with MD5 over the same bytes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MESSAGES: dict[str, type[rt.Message]] = {
     "medium": fc.ListStationsResponse,
     "long": fc.ListStationsResponse,
 }
-"""Names of files, and what they hold."""
+"""Names of files, and their types."""
 
 LAYOUT = fc.FC.layout
 HEADER = LAYOUT.length
@@ -33,7 +33,7 @@ DIGEST = slice(_BEFORE, _BEFORE + LAYOUT.digest_size)
 
 
 def least_decode(frame: bytes) -> Any:
-    """The least that reading takes: the digest checked, and all of the JSON parsed."""
+    """The least work of reading: check the digest and parse all of the JSON."""
     body = frame[HEADER:]
     if hashlib.md5(body, usedforsecurity=False).digest() != frame[DIGEST]:
         raise ValueError("another digest")
@@ -41,17 +41,17 @@ def least_decode(frame: bytes) -> Any:
 
 
 def least_encode(header: bytes, message: Any) -> bytes:
-    """The least that writing takes: all of the JSON made, and its digest behind a header that is ready but for that."""
+    """The least work of writing: make all of the JSON, and put its digest after a prepared header."""
     body = _dumps(message).encode()
     return header + hashlib.md5(body, usedforsecurity=False).digest() + body
 
 
-# Compact, as it is sent; made once, which is faster than `json.dumps` with these settings.
+# Compact, as sent. One encoder is faster than `json.dumps` with these settings.
 _dumps = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 
 
 def codec(effort: Effort) -> list[dict[str, Any]]:
-    """What each message costs, in microseconds."""
+    """Returns the cost of each message, in microseconds."""
     return [_message(name, cls, effort) for name, cls in MESSAGES.items()]
 
 
@@ -77,7 +77,7 @@ def _message(name: str, cls: type[rt.Message], effort: Effort) -> dict[str, Any]
 
     plain = least_decode(frame)
     header = frame[: DIGEST.start]
-    # Each side writes what it reads, all of it; only the time of the response is that of now.
+    # Each side writes all that it reads. Only the time of the response is the present one.
     assert decode(encode()) == message
     assert len(encode()) == len(frame)
     assert least_encode(header, plain) == frame

@@ -19,7 +19,7 @@ REPORT = Path(__file__).resolve().parents[3] / "bench" / "packages" / "python.js
 
 
 def processor() -> str:
-    """Its name, where the system has one."""
+    """Returns the processor's name, if the system has one."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -28,7 +28,7 @@ def processor() -> str:
 
 
 def digits(value: float | None) -> str:
-    """A figure with as many digits as mean something."""
+    """Returns a figure with its significant digits."""
     return "–" if value is None else f"{value:.2f}" if value < 100 else f"{value:.0f}"
 
 
@@ -55,7 +55,7 @@ def show(report: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Measures and tells."""
+    """Runs the benchmark, and prints or writes the result."""
     parser = argparse.ArgumentParser(prog="bench/run", description=__doc__)
     either = parser.add_mutually_exclusive_group()
     either.add_argument("--smoke", action="store_true", help="one tiny round: that all works, and no figures to go by")

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Effort(NamedTuple):
-    """How long to measure."""
+    """Length of a measurement."""
 
     rounds: int
     """Rounds of all cases."""
@@ -28,9 +28,9 @@ def _cost(run: Callable[[], object], times: int) -> float:
 
 
 def measure(cases: Mapping[str, Callable[[], object]], effort: Effort) -> dict[str, float]:
-    """Microseconds that each case takes, the median of its rounds.
+    """Returns the time of each case in microseconds, the median of its rounds.
 
-    The cases take turns, in another order each round, so that what disturbs one disturbs all.
+    The cases take turns, in another order each round. A disturbance then affects all of them alike.
     """
     times: dict[str, int] = {}
     for name, run in cases.items():

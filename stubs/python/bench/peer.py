@@ -1,6 +1,6 @@
-"""A process that serves or calls, as the process says that started it: `peer.py serve PEER`, `peer.py call PEER PORT`.
+"""A process that serves or calls, as its arguments specify: `peer.py serve PEER`, `peer.py call PEER PORT`.
 
-It says a value in JSON on each line: first its port, then what it is asked for on its input.
+It prints a JSON value on each line: first its port, then the answer to each line of its input.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 async def drive(call: Call, in_flight: int, calls: int) -> dict[str, float]:
-    """Makes so many calls with so many in flight; microseconds of the middle one and of one of the slowest."""
+    """Makes `calls` calls, `in_flight` at a time. Returns microseconds of the median and of a slow one."""
     latencies: list[float] = []
     left = iter(range(calls))
 
@@ -37,7 +37,7 @@ async def drive(call: Call, in_flight: int, calls: int) -> dict[str, float]:
 
 
 def say(value: Any) -> None:
-    """Says it on a line."""
+    """Prints a value on a line."""
     print(json.dumps(value), flush=True)
 
 

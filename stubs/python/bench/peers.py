@@ -1,4 +1,4 @@
-"""Who answers and who asks: this package, gRPC, and bare transports of asyncio, with the same question and answer."""
+"""Servers and callers: this package, gRPC, and bare transports of asyncio, with the same request and response."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HOST = "127.0.0.1"
 STATION = 1_671_124_918_008
 NAME = "gate1"
 ASKS, ANSWERS = 95, 204
-"""Bytes of the frame that asks, and of the frame that answers."""
+"""Bytes of the request's frame, and of the response's."""
 WINDOW = 64
 """Most requests in one write of the bare transports."""
 
@@ -30,10 +30,10 @@ sys.path.append(str(Path(__file__).resolve().parents[3] / "bench" / "proto"))
 
 
 class Robot(fc.PartialRobot):
-    """Answers for a station, with a message made for each call."""
+    """A robot that returns a station, with a new message for each call."""
 
     async def get_station(self, context: rt.Context, request: fc.GetStationRequest) -> fc.GetStationResponse:
-        """The station that is asked for."""
+        """Returns the station."""
         return fc.GetStationResponse(
             data=fc.GetStationResponseData(
                 station_name=NAME,
@@ -57,13 +57,13 @@ class Fc:
     windows = False
 
     async def serve(self) -> int:
-        """Gives the port."""
+        """Returns the port."""
         server = rt.Server(Robot(), rt.ServerConfig(address=HOST, command_port=0, data_port=0))
         await server.__aenter__()
         return server.command_address[1]
 
     async def connect(self, port: int, window: int) -> Call:
-        """Gives what makes a call."""
+        """Returns a function that makes a call."""
         client = await fc.Client.connect(rt.ClientConfig(host=HOST, command_port=port))
 
         async def call() -> None:
@@ -83,7 +83,7 @@ class Grpc:
         self.messages, self.services = grpc.protos_and_services("bench.proto")
 
     async def serve(self) -> int:
-        """Gives the port."""
+        """Returns the port."""
         messages, success = self.messages, fc.FC.results.success
 
         class Servicer(self.services.RobotServicer):  # type: ignore[name-defined, misc]
@@ -104,12 +104,12 @@ class Grpc:
         self.services.add_RobotServicer_to_server(Servicer(), server)
         port: int = server.add_insecure_port(f"{HOST}:0")
         await server.start()
-        # Nobody else holds it.
+        # Keeps a reference, since nothing else does.
         self.server = server
         return port
 
     async def connect(self, port: int, window: int) -> Call:
-        """Gives what makes a call."""
+        """Returns a function that makes a call."""
         stub = self.services.RobotStub(grpc.aio.insecure_channel(f"{HOST}:{port}"))
         make = self.messages.StationRequest
 
@@ -146,19 +146,19 @@ class _Asking(asyncio.Protocol):
 
 
 class Raw:
-    """As many bytes, a window of requests in one write, and nothing done with them."""
+    """The floor: as many bytes, a window of requests in one write, without any processing."""
 
     windows = True
 
     async def serve(self) -> int:
-        """Gives the port."""
+        """Returns the port."""
         server = await asyncio.get_running_loop().create_server(_Answering, HOST, 0)
-        # Nobody else holds it.
+        # Keeps a reference, since nothing else does.
         self.server = server
         return int(server.sockets[0].getsockname()[1])
 
     async def connect(self, port: int, window: int) -> Call:
-        """Gives what makes a window of calls."""
+        """Returns a function that makes a window of calls."""
         loop = asyncio.get_running_loop()
         transport, asking = await loop.create_connection(_Asking, HOST, port)
         asks = bytes(window * ASKS)
@@ -172,4 +172,4 @@ class Raw:
 
 
 PEERS: dict[str, Callable[[], Raw | Fc | Grpc]] = {"raw": Raw, "fc": Fc, "grpcio": Grpc}
-"""All of them."""
+"""All peers."""

@@ -1,7 +1,7 @@
-"""What the generator makes of other specs than that of the package: an odd one, two small ones, and one that changes.
+"""The generator's output for other specs: an odd one, two small ones, and one that changes.
 
-It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and beside this Python `ruff`, `mypy` and
-`pyright`.
+It needs the generator, built with `cargo build -p fc-cli` or named by `FC`. It also needs this Python's `ruff`, `mypy`
+and `pyright`.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def run(*command: str, path: str = "", folder: Path | None = None) -> tuple[bool
 
 
 class Project:
-    """A spec in a folder of its own, with what is generated of it."""
+    """A spec in a separate folder, with the files generated from it."""
 
     def __init__(self, *specs: Path, options: str = "") -> None:
         self.folder = Path(tempfile.mkdtemp())
@@ -105,7 +105,7 @@ class Project:
 
 
 class Course(unittest.IsolatedAsyncioTestCase):
-    """Names that are keywords, types and words of the package itself; prose that strings misread."""
+    """Names that are keywords, types and words of the package, and prose that strings could misread."""
 
     project: ClassVar[Project]
 
@@ -122,7 +122,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
         self.assertTrue(ok, text)
 
     def test_the_linter_has_nothing_to_say(self) -> None:
-        # What the settings of the package leave to the words of the spec.
+        # Rules that the settings of the package suspend for the words of the spec.
         left = "D210,D400,D415,E501,E741,F403"
         settings = ("--config", str(PACKAGE / "pyproject.toml"), "--no-cache", "--ignore", left)
         ok, text = run(sys.executable, "-m", "ruff", "check", *settings, str(self.project.source))
@@ -169,7 +169,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
                     self.assertTrue(hasattr(odd.sync.Client, command.method_name))
                     self.assertTrue(hasattr(odd.Robot, command.method_name))
                     with warnings.catch_warnings():
-                        # Of what is withdrawn.
+                        # Warnings about deprecated commands.
                         warnings.simplefilter("ignore", DeprecationWarning)
                         call = getattr(client, command.method_name)(command.request.example())
                     self.assertEqual(await call, command.response.example())
@@ -178,7 +178,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
 
     def test_what_is_said_is_what_the_spec_says(self) -> None:
         odd = self.project.module("odd_line")
-        # The type of each name that Python has for itself, and how it is called.
+        # The type of each reserved name, with its name in Python.
         names = {field: field for field in ("dataclass", "annotations", "going")}
         names |= {field: f"{field}_" for field in ("property", "field", "str", "validate", "to_json")}
         request = odd.DriveRequest.example()
@@ -189,7 +189,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
         self.assertNotIn("it's", repr(request))
         self.assertIn("it's", request.to_json())
         self.assertEqual(odd.DriveError.of(3), odd.DriveError.EXPIRED)
-        # Classes of patterns are those of ASCII.
+        # Character classes of patterns match only ASCII.
         for text, is_right in (("a-b-c", True), ("a-b-\u0661", False), ("a-b-\u7ad9", False), ("ab-c", False)):
             request.word = text
             if is_right:
@@ -211,12 +211,12 @@ class Course(unittest.IsolatedAsyncioTestCase):
 
 
 class Names(unittest.TestCase):
-    """What the runtime's classes have anyway."""
+    """Attributes of the runtime's classes."""
 
     def test_no_command_and_no_field_takes_a_name_of_the_runtime(self) -> None:
         bases = (rt.Client, rt.SyncClient, rt.Robot, rt.ExampleRobot, rt.Reporter, rt.Streamer)
         methods = {name for base in bases for name in public(base)}
-        # Set by their constructors, so that the classes do not have them.
+        # Their constructors set these, so the classes do not have them.
         methods |= {"connection", "server", "protocol"}
         fields = public(rt.Message) | {"extra"}
         self.assertLess({"close", "unknown", "handlers_by_code", "wait"}, methods)
@@ -251,7 +251,7 @@ def public(cls: type) -> set[str]:
 
 
 class Vectors(unittest.TestCase):
-    """The golden messages of two protocols that have what ours has not."""
+    """The golden messages of two protocols with features that ours lacks."""
 
     def test_they_are_read_and_written(self) -> None:
         for name, least in (("meter", 300), ("beacon", 30)):
@@ -265,7 +265,7 @@ class Vectors(unittest.TestCase):
 
 
 class Ids(unittest.TestCase):
-    """The ids of entities with types of their own."""
+    """Ids of entities as separate types."""
 
     def test_they_travel_as_what_they_hold_and_none_is_taken_for_another(self) -> None:
         project = Project(options=", newtypes: true")
@@ -289,7 +289,7 @@ class Ids(unittest.TestCase):
 
 
 class Lockstep(unittest.TestCase):
-    """A change of the spec is an error where a program is checked that has not followed."""
+    """A changed spec is an error in a program that has not followed."""
 
     def setUp(self) -> None:
         self.project = Project(ROOT / "fc-generated/tests/meter/spec")
@@ -338,7 +338,7 @@ class Lockstep(unittest.TestCase):
         ok, text = self.checked()
         self.assertFalse(ok)
         self.assertIn('abstract attribute "count_pulses"', text)
-        # The same word in the place of the other is all it takes.
+        # One other word is all it takes.
         user = USER.replace("meter.Robot", "meter.PartialRobot") + (
             "\n\nasync def count(client: meter.Client, there: meter.sync.Client) -> None:\n"
             "    a: meter.CountPulsesResponse = await client.count_pulses()\n"

@@ -17,22 +17,22 @@ from common import Table, arguments, client_config
 
 T = TypeVar("T")
 
-# How long the app waits for what the robot sends of its own accord.
+# Time the app waits for reports and pictures, in seconds.
 PATIENCE = 20.0
 
 
 class Tour:
-    """What came of each operation so far."""
+    """Results of the operations so far."""
 
     def __init__(self, lang: str) -> None:
-        """With nothing yet."""
+        """Creates the table without results."""
         self.is_chinese = lang == "zh"
         head = ["功能码", "类型", "名称", "说明", "结果"], ["Code", "Kind", "Name", "Title", "Outcome"]
         self.table = Table(*self.pick(*head))
         self.failed = 0
 
     def pick(self, zh: T, en: T) -> T:
-        """What the language calls for."""
+        """Returns the text in the chosen language."""
         return zh if self.is_chinese else en
 
     def add(self, code: int, kind: str, outcome: str, *, ok: bool = True) -> None:
@@ -45,7 +45,7 @@ class Tour:
 
 async def call_all(client: fc.Client, tour: Tour) -> None:
     """Calls every command with the spec's example."""
-    # A robot still has what is withdrawn.
+    # A robot still handles deprecated commands.
     warnings.simplefilter("ignore", DeprecationWarning)
     kind = tour.pick("指令", "command")
     for code, command in fc.FC.commands_by_code.items():
@@ -75,7 +75,7 @@ async def receive_all(reports: rt.Reports[fc.AnyReport], tour: Tour) -> None:
 
 
 async def receive_picture(data: rt.DataConnection, tour: Tour) -> None:
-    """Waits for the picture that the call for a map image has ordered; its digest has been verified by then."""
+    """Waits for the picture requested by the call for a map image. Its digest has already been verified."""
     try:
         frame = await asyncio.wait_for(data.recv(), PATIENCE)
     except asyncio.TimeoutError:
@@ -90,7 +90,7 @@ async def receive_picture(data: rt.DataConnection, tour: Tour) -> None:
 
 
 async def run() -> int:
-    """The tour; how many operations have failed."""
+    """Runs the tour. Returns the number of failed operations."""
     asked = arguments("Calls every command of a robot and prints what came of it.")
     async with fc.Client.connect(client_config(asked)) as client, client.reports() as reports:
         # region data

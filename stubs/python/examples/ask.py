@@ -1,4 +1,4 @@
-"""A tool for the field, without `async`: asks a robot who it is and how it does.
+"""A tool for the field, without `async`: reads a robot's serial number and state.
 
 ./run ask --host 127.0.0.1
 """
@@ -14,7 +14,7 @@ from common import arguments, client_config
 
 # region ask
 def ask(config: rt.ClientConfig) -> None:
-    """Prints what the robot says of itself."""
+    """Prints the robot's facts."""
     with fc.sync.Client.connect(config) as client:
         print("robot", client.get_robot_sn().data.robot_sn)
         match client.get_recharge_status().data.recharge_status:
@@ -26,7 +26,7 @@ def ask(config: rt.ClientConfig) -> None:
             faults = client.list_faults(timeout=10)
         except rt.RefusedError as error:
             # 机器人拒绝了；没有应答、断线等另有各自的错误类。
-            # The robot has refused; no answer, a loss and so on have error classes of their own.
+            # The robot has refused. A timeout, a loss and so on have separate error classes.
             print("faults: refused with", error.refusal.code)
         else:
             print("faults", faults.to_json())

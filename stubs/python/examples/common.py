@@ -1,4 +1,4 @@
-"""What the examples share: their command line, and a table whose columns line up."""
+"""Shared by the examples: their command line, and a table with aligned columns."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 def arguments(usage: str, *, is_robot: bool = False) -> argparse.Namespace:
-    """Which robot, at which ports; without ports, those of the spec."""
+    """Parses the command line: address and ports of the robot, by default the spec's ports."""
     parser = argparse.ArgumentParser(description=usage)
     parser.add_argument("--host", default="127.0.0.1")
     parser.add_argument("--command-port", type=int)
@@ -41,7 +41,7 @@ def server_config(asked: argparse.Namespace) -> rt.ServerConfig:
 
 
 def _made(kind: Callable[..., T], asked: argparse.Namespace, **more: Any) -> T:
-    """A configuration. Ends the program if it is wrong."""
+    """Returns a configuration. Ends the program if it is invalid."""
     try:
         gzip = rt.Gzip(from_bytes=asked.gzip_from)
         return kind(command_port=asked.command_port, data_port=asked.data_port, gzip=gzip, **more)
@@ -51,7 +51,7 @@ def _made(kind: Callable[..., T], asked: argparse.Namespace, **more: Any) -> T:
 
 
 def _delay(text: str) -> float:
-    """Milliseconds. Raises `ValueError`."""
+    """Returns milliseconds. Raises `ValueError`."""
     number = float(text)
     if not 0 <= number < math.inf:
         raise ValueError
@@ -59,7 +59,7 @@ def _delay(text: str) -> float:
 
 
 def _scale(text: str) -> int:
-    """A factor, within what fits into a frame. Raises `ValueError`."""
+    """Returns a factor whose picture fits into a frame. Raises `ValueError`."""
     number = int(text)
     if not 1 <= number <= 50:
         raise ValueError
@@ -67,10 +67,10 @@ def _scale(text: str) -> int:
 
 
 class Table:
-    """Rows of cells, each column as wide as its widest cell on a terminal, where Chinese takes two columns a letter."""
+    """Rows of cells, with each column as wide as its widest cell. Chinese characters take two columns on a terminal."""
 
     def __init__(self, *head: str) -> None:
-        """With its first row."""
+        """Creates a table with its first row."""
         self.rows = [head]
 
     def row(self, *cells: str) -> None:
@@ -78,7 +78,7 @@ class Table:
         self.rows.append(cells)
 
     def __str__(self) -> str:
-        """All rows."""
+        """Returns all rows."""
         widths = [max(map(_width, column)) for column in zip(*self.rows, strict=True)]
         lines = [
             "  ".join(cell + " " * (width - _width(cell)) for cell, width in zip(row, widths, strict=True)).rstrip()
@@ -88,7 +88,7 @@ class Table:
 
 
 def _lang() -> str:
-    """The language of the environment, as POSIX has it."""
+    """Returns the language of the environment, as POSIX specifies."""
     locales = map(os.environ.get, ("LC_ALL", "LC_MESSAGES", "LANG"))
     locale = next(filter(None, locales), "")
     return "zh" if locale.startswith("zh") else "en"

@@ -17,12 +17,12 @@ from common import arguments, client_config
 
 # Calls in flight at a time.
 AT_ONCE = 64
-# Reads that are to be answered though the connection is cut.
+# Reads that get a response although the connection is cut.
 READS = 1000
 
 
 async def read(client: fc.Client) -> None:
-    """Each call is a read, so it is sent again after a loss, and every single one is answered."""
+    """Each call only reads, so it is sent again after a loss, and every call gets its response."""
     left = iter(range(READS))
 
     async def one_after_another() -> None:
@@ -33,9 +33,9 @@ async def read(client: fc.Client) -> None:
 
 
 async def give_up(client: fc.Client) -> None:
-    """Sends calls and cancels them before an answer can have come; the connection serves on."""
+    """Sends calls and cancels them before a response can come. The connection stays usable."""
     calls = [asyncio.ensure_future(client.get_robot_sn()) for _ in range(AT_ONCE)]
-    # Each has its turn to be sent.
+    # Each task runs once, to send its call.
     await asyncio.sleep(0)
     for call in calls:
         call.cancel()
@@ -44,9 +44,9 @@ async def give_up(client: fc.Client) -> None:
 
 
 async def call_to_the_end(client: fc.Client) -> int:
-    """Calls until the robot has gone; how many were answered.
+    """Calls until the robot has gone. Returns the number of responses.
 
-    Every call has an end, and the end of the last ones says that the connection was lost.
+    Every call ends, the last ones because the connection was lost.
     """
     answered = 0
 
@@ -66,7 +66,7 @@ async def call_to_the_end(client: fc.Client) -> int:
 
 
 async def run() -> None:
-    """One part after the other, with a line for the one who makes the trouble."""
+    """Runs one part after another, with a line for the program that causes the trouble."""
     asked = arguments("Tries out the connection to a robot while somebody else makes trouble.")
     config = client_config(asked)
     async with fc.Client.connect(config) as client:
@@ -75,7 +75,7 @@ async def run() -> None:
         print(f"read: {READS} answered", flush=True)
         await give_up(client)
         print(f"given up: {AT_ONCE}, and the next one answered", flush=True)
-    # Another one, which does not come back: that the robot has ended ends its calls.
+    # A client without reconnecting: its calls end when the robot has ended.
     async with fc.Client.connect(replace(config, reconnect=None)) as client:
         print("calling", flush=True)
         answered = await call_to_the_end(client)

@@ -21,7 +21,7 @@ class MyRobot(fc.PartialRobot):
     """
 
     async def get_robot_sn(self, context: rt.Context, request: fc.GetRobotSnRequest) -> fc.GetRobotSnResponse:
-        """Tells the serial number."""
+        """Returns the serial number."""
         # 其余字段先用规范中的示例。
         # The other keys are those of the spec's example for now.
         response = fc.GetRobotSnResponse.example()
@@ -34,7 +34,7 @@ class MyRobot(fc.PartialRobot):
 
 # region report
 async def report(reporter: fc.Reporter) -> None:
-    """Reports how recharging goes."""
+    """Reports the progress of recharging."""
     report = fc.RechargeProgress.example()
     report.data.recharge_status = fc.RechargeStatus.AT_UNDOCK_POINT
     # 等到每个 app 应答，或重发次数用完。
@@ -48,7 +48,7 @@ async def report(reporter: fc.Reporter) -> None:
 
 # region app
 async def app(client: fc.Client) -> None:
-    """Asks who the robot is."""
+    """Reads the robot's serial number."""
     answer = await client.get_robot_sn()
     print("app: the robot is", answer.data.robot_sn)
 
@@ -70,7 +70,7 @@ async def listen(client: fc.Client) -> None:
 
 
 async def main() -> None:
-    """Both of them."""
+    """Runs both."""
     # region serve
     # 端口 0：由系统分配。不写就是协议规定的端口。
     # Port 0 is any that is free; without it, the ports of the protocol.

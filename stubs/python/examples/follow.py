@@ -1,4 +1,4 @@
-"""A command followed from its answer to its end: the robot returns to its charging dock and reports each step.
+"""A command followed from its response to its end: the robot returns to its charging dock and reports each step.
 
 They meet on loopback.
 
@@ -15,19 +15,19 @@ from fc import RechargeError, RechargeProgress, RechargeStatus
 
 
 class Docking(fc.PartialRobot):
-    """A robot that sets off when it is asked to."""
+    """A robot that starts to recharge on request."""
 
     def __init__(self) -> None:
         self.asked = asyncio.Event()
 
     async def start_recharge(self, context: rt.Context, request: fc.StartRechargeRequest) -> fc.StartRechargeResponse:
-        """Sets off."""
+        """Starts to recharge."""
         self.asked.set()
         return fc.StartRechargeResponse()
 
 
 async def drive(robot: Docking, reporter: fc.Reporter) -> None:
-    """Drives to the dock once it is asked to, and fails there."""
+    """Drives to the dock on request, and fails there."""
     await robot.asked.wait()
     report = RechargeProgress.example()
     for status in (RechargeStatus.NAVIGATING, RechargeStatus.AT_UNDOCK_POINT):
@@ -39,12 +39,12 @@ async def drive(robot: Docking, reporter: fc.Reporter) -> None:
 
 # region follow
 # 一条上报最多等多久；由 app 自己决定。
-# How long the app waits for a report; that is for it to decide.
+# Longest wait for a report, in seconds; the app decides.
 PATIENCE = 60.0
 
 
 async def recharge(client: fc.Client) -> None:
-    """Charges, and prints how it goes."""
+    """Recharges the robot, and prints its progress."""
     async with client.start_recharge().follow() as following:
         print("app: the robot has answered")
         while (event := await asyncio.wait_for(following.recv(), PATIENCE)) is not None:
@@ -72,7 +72,7 @@ async def recharge(client: fc.Client) -> None:
 
 
 async def main() -> None:
-    """Both of them."""
+    """Runs both."""
     robot = Docking()
     async with rt.Server(robot, rt.ServerConfig(address="127.0.0.1", command_port=0, data_port=0)) as server:
         port = server.command_address[1]

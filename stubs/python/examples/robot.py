@@ -1,12 +1,12 @@
-"""A robot to try an app against, and nothing else.
+"""A robot for trying out an app.
 
-It responds to every command with the spec's example, also to those that would move a real one, pushes every report once
-to each app, and sends the picture of a map over the data port to any app that asks for one.
+It responds to every command with the spec's example, even to those that move a real robot. It pushes every report once
+to each app. If an app requests the picture of a map, it sends one over the data port.
 
     ./run robot --command-port 0 --data-port 0
 
-The first line says where it listens: `commands 127.0.0.1:PORT data 127.0.0.1:PORT`. It ends with Ctrl-C or SIGTERM:
-what it has begun is answered first. It ends at once if it is asked again.
+The first line has its addresses: `commands 127.0.0.1:PORT data 127.0.0.1:PORT`. It ends with Ctrl-C or SIGTERM, after
+responding to the requests in its handlers. A second signal ends it at once.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Coroutine, Mapping
 
-# What is being handled when the robot is asked to end may take so long.
+# Time for requests in handlers when the robot is asked to end, in seconds.
 GRACE = 5.0
-# What asks it to end.
+# Signals that ask it to end.
 ENDS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Attentive(fc.ExampleRobot):
-    """Answers with the examples, and tells of every request."""
+    """Responds with the examples, and notes each request."""
 
     def __init__(self, delay: float) -> None:
         super().__init__(pretend_motion=True)
@@ -40,11 +40,11 @@ class Attentive(fc.ExampleRobot):
         self.asked: asyncio.Queue[rt.Context] = asyncio.Queue()
 
     def handlers_by_code(self) -> Mapping[int, rt.Handler]:
-        """Those of the examples, watched."""
+        """Returns the handlers of the examples, with their requests noted."""
         return {code: self.watched(handler) for code, handler in super().handlers_by_code().items()}
 
     def watched(self, handler: rt.Handler) -> rt.Handler:
-        """A handler whose requests are told."""
+        """Returns a handler that notes its requests."""
 
         async def handle(context: rt.Context, request: Any) -> rt.Message:
             self.asked.put_nowait(context)
@@ -56,7 +56,7 @@ class Attentive(fc.ExampleRobot):
 
 
 class Attendant:
-    """Does what the robot does of its own accord."""
+    """Sends the robot's reports and pictures."""
 
     def __init__(self, server: rt.Server, robot: Attentive, content: bytes) -> None:
         self.server, self.robot, self.content = server, robot, content
@@ -64,13 +64,13 @@ class Attendant:
         self.tasks: set[asyncio.Task[None]] = set()
 
     def start(self, work: Coroutine[Any, Any, None]) -> None:
-        """Lets it be done beside everything else."""
+        """Starts work in the background."""
         task = asyncio.get_running_loop().create_task(work)
         self.tasks.add(task)
         task.add_done_callback(self.tasks.discard)
 
     async def run(self) -> None:
-        """Until it is cancelled."""
+        """Runs until it is cancelled."""
         while True:
             request = await self.robot.asked.get()
             if request.connection not in self.known:
@@ -80,7 +80,7 @@ class Attendant:
                 self.start(self.send_picture(request))
 
     async def left(self) -> None:
-        """Until an app has asked for something and the last has left."""
+        """Waits until an app has made a request and the last app has left."""
         while not self.known or self.server.connections:
             await asyncio.sleep(0.1)
 
@@ -94,13 +94,13 @@ class Attendant:
                 say(f"{report.name}: {error}")
 
     async def send_picture(self, request: rt.Context) -> None:
-        """Sends a picture to the app that has asked for one, under the id of its request."""
+        """Sends a picture to the app that requested one, under the id of its request."""
         content = self.content
         for _ in range(40):
             try:
                 await self.server.send_data(request.code, request.id, content, request.connection)
             except rt.NoConnectionError:
-                # The app may ask before its data connection has been accepted.
+                # The app's request may come before its data connection has been accepted.
                 await asyncio.sleep(0.05)
             except rt.PushError as error:
                 say(f"picture: {error}")
@@ -124,11 +124,11 @@ def picture(scale: int) -> bytes:
 
 
 async def run(asked: argparse.Namespace) -> None:
-    """Serves until somebody asks it to end."""
+    """Serves until a signal asks it to end."""
     robot = Attentive(asked.delay / 1000)
     server = rt.Server(robot, server_config(asked))
     await server.bind()
-    # Before anybody knows where it listens: who asks it to end at once is heard, too.
+    # Set before the addresses are printed, so that an immediate signal is not lost.
     asked_to_end, asked_again = asyncio.Event(), asyncio.Event()
     left = [asked_again, asked_to_end]
     loop = asyncio.get_running_loop()
@@ -139,7 +139,7 @@ async def run(asked: argparse.Namespace) -> None:
         if not left:
             ignore_signals()
 
-    # Handlers of the event loop would be gone before the program is.
+    # Handlers of the event loop would be removed before the program ends.
     for number in ENDS:
         signal.signal(number, ask)
     (host, command_port), (_, data_port) = server.command_address, server.data_address
@@ -147,20 +147,20 @@ async def run(asked: argparse.Namespace) -> None:
 
     attendant = Attendant(server, robot, picture(asked.picture_scale))
     await first_of(attendant.run(), asked_to_end.wait(), *([attendant.left()] if asked.once else []))
-    # Who asks twice does not want to wait.
+    # A second signal ends the robot at once.
     await first_of(server.shutdown(GRACE), asked_again.wait())
     await server.shutdown(0)
     ignore_signals()
 
 
 def ignore_signals() -> None:
-    """Lets the program end as it wants to."""
+    """Ignores further signals while the program ends."""
     for number in ENDS:
         signal.signal(number, signal.SIG_IGN)
 
 
 async def first_of(*works: Coroutine[Any, Any, Any]) -> None:
-    """Does them all until the first has ended."""
+    """Runs all of them until the first has ended."""
     tasks = [asyncio.create_task(work) for work in works]
     done, left = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     for task in left:

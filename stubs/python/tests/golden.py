@@ -1,4 +1,4 @@
-"""Golden messages read and written as the types of a generated package."""
+"""Golden messages read and written with the types of a generated package."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 def check(test: unittest.TestCase, protocol: rt.Protocol, folder: Path) -> tuple[int, int]:
-    """Checks every message of the vectors in a folder; says how many were accepted and rejected."""
+    """Checks every message of the vectors in a folder. Returns the numbers of accepted and rejected ones."""
     operations: dict[str, Any] = {one.name: one for one in (*protocol.commands, *protocol.reports, *protocol.streams)}
     counts = [0, 0]
     seen: set[str] = set()
     for path in sorted(folder.glob("*.json")):
         vectors = json.loads(path.read_text(encoding="utf-8"))
-        # `bodies.json` and `frames.json` are of no operation.
+        # `bodies.json` and `frames.json` have no operation.
         if vectors["operation"] is None:
             continue
         operation = operations[vectors["operation"]]
@@ -46,12 +46,12 @@ def check(test: unittest.TestCase, protocol: rt.Protocol, folder: Path) -> tuple
 
 
 def expected(vector: dict[str, Any]) -> Any:
-    """What an accepted message is when it is written again."""
+    """Returns the expected JSON of an accepted message that is written again."""
     return vector.get("canonical", vector["body"]) if "body" in vector else vector["data"]
 
 
 def again(protocol: rt.Protocol, operation: Any, vector: dict[str, Any]) -> Any:
-    """Reads a message as its type, and writes it again."""
+    """Reads a message with its type, and writes it again."""
     if "frame" in vector:
         decoder = rt.Decoder(protocol)
         decoder.push(bytes.fromhex(vector["frame"]))

@@ -1,6 +1,6 @@
-"""Says of each frame, one in hex on a line, what this package makes of it, as a list in JSON on a line.
+"""Decodes each frame, one in hex on a line, and prints the result as a list in JSON on a line.
 
-Decoders in several languages are compared by it. `fc-reflect/tests/it/judges.rs` says what the lists are.
+A test compares these lists between languages; `fc-reflect/tests/it/judges.rs` describes them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fc_runtime.enveloped import read_with_envelope, write_with_envelope
 
 @dataclass(slots=True, kw_only=True)
 class Nothing(rt.Message):
-    """A message of whose own keys nothing is known."""
+    """A message without declared keys."""
 
     extra: rt.Extra = field(default_factory=rt.Extra)
 

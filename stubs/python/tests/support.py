@@ -18,16 +18,16 @@ ROOT = Path(__file__).resolve().parents[3]
 
 PROTOCOL = FC
 LIMITS = FC.defaults.limits
-# How long a test may take, in seconds.
+# Time limit of a test, in seconds.
 PATIENCE = 120.0
 
 
 class AsyncCase(unittest.IsolatedAsyncioTestCase):
-    """Tests that fail where they would wait for ever."""
+    """Tests that fail instead of waiting forever."""
 
     async def asyncSetUp(self) -> None:
         loop = asyncio.get_running_loop()
-        # These tests run in the debug mode of asyncio, and it is of no interest how busy the machine is.
+        # The tests run in asyncio's debug mode. Its warnings about slow callbacks depend on the machine's load.
         loop.slow_callback_duration = PATIENCE
         self.addCleanup(loop.call_later(PATIENCE, self.give_up).cancel)
 
@@ -44,12 +44,12 @@ HELD: Counter[str] = Counter()
 
 
 def holds(kind: str) -> None:
-    """A case of a kind of `conformance/README.md` has held."""
+    """Counts a passed case of a kind in `conformance/README.md`."""
     HELD[kind] += 1
 
 
 def say_what_held() -> None:
-    """A line `KIND NUMBER` of each kind behind what is in the file that `FC_CONFORMANCE` names, if it names one."""
+    """Appends a line `KIND NUMBER` for each kind to the file that `FC_CONFORMANCE` names."""
     if path := os.environ.get("FC_CONFORMANCE"):
         with Path(path).open("a", encoding="utf-8") as file:
             file.writelines(f"{kind} {number}\n" for kind, number in HELD.items())
@@ -57,5 +57,5 @@ def say_what_held() -> None:
 
 atexit.register(say_what_held)
 
-# A test that hangs ends all of them, and says where it hangs.
+# A test that hangs ends all of them, with a stack trace.
 faulthandler.dump_traceback_later(500, exit=True)

@@ -1,4 +1,4 @@
-"""The client without `async`: from many threads, after its end, and while somebody presses Ctrl-C."""
+"""The client without `async`: from many threads, after its end, and with Ctrl-C."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PATIENCE = 20.0
 
 
 class Robot(sample.PartialRobot):
-    """A robot that answers, and whose docking takes for ever."""
+    """A robot that responds, except to docking, which never ends."""
 
     async def get_battery(self, context: rt.Context, request: GetBatteryRequest) -> GetBatteryResponse:
         return GetBatteryResponse(level=1, phase=sample.Phase.IDLE, extra=request.extra)
@@ -32,7 +32,7 @@ docking = threading.Event()
 
 
 class Pressed(BaseException):
-    """As `KeyboardInterrupt`, but of this test."""
+    """Like `KeyboardInterrupt`, but only for this test."""
 
 
 class Blocking(unittest.TestCase):

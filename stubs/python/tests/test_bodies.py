@@ -1,4 +1,4 @@
-"""Bodies at the edges of JSON are read, refused and written again as `bodies.json` says."""
+"""Bodies at the edges of JSON are read, refused and written again as `bodies.json` specifies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is to be awaited is a coroutine, whatever else it can do: calls that can be followed, following, connecting."""
+"""All results to await are coroutines: calls to follow, following, connecting."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ async def group(work: Coroutine[Any, Any, Any]) -> Any:
 
 
 async def elsewhere(work: Coroutine[Any, Any, Any]) -> Any:
-    """As a thread beside the event loop does it."""
+    """Awaits work as another thread does."""
     return await asyncio.wrap_future(asyncio.run_coroutine_threadsafe(work, asyncio.get_running_loop()))
 
 

@@ -1,4 +1,4 @@
-"""The data port over TCP: streams both ways, slow apps, losses, and whose a data connection is."""
+"""The data port over TCP: streams both ways, slow apps, losses, and the owner of a data connection."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Data(AsyncCase):
         frame = await asyncio.wait_for(from_apps.recv(), PATIENCE)
         assert frame is not None
         self.assertEqual(frame.id, 3)
-        # It may be made again once more, with the command connection: a loss that is told like any other.
+        # It may be made once more, with the command connection: that loss is reported like any other.
         receiving = asyncio.ensure_future(_received(data))
         while not receiving.done():
             await server.send_data(0x0500, 4, b"back")
@@ -159,7 +159,7 @@ class Data(AsyncCase):
             assert frame is not None
             self.assertEqual((frame.id, len(frame.data)), (number, 256 * 1024))
         await sending
-        # Another receiver takes over, and without one they are dropped.
+        # Another receiver takes over. Without one, frames are dropped.
         later = server.streams()
         self.assertIsNone(await from_apps.recv())
         await data.send(0x0401, 64, b"")
@@ -182,7 +182,7 @@ class Data(AsyncCase):
         self.assertEqual(lost.exception.loss.kind, rt.LossKind.RENEWED)
         while (state := await asyncio.wait_for(anext(states), PATIENCE)) != rt.Connected(2):
             self.assertIsInstance(state, rt.Connecting)
-        # The robot knows whose it is again.
+        # The robot knows its owner again.
         while len(server.connections) != 1 or server.counters.data_connections != 2:
             await asyncio.sleep(0)
         self.assertEqual(await server.send_data(0x0500, 7, b"", server.connections[0][0]), 1)

@@ -1,4 +1,4 @@
-"""The names of errors are those of `errors.json`, which all implementations share."""
+"""The names of errors are those of `errors.json`, shared by all implementations."""
 
 from __future__ import annotations
 

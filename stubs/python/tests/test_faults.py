@@ -1,4 +1,4 @@
-"""Of several faults in one body, that of `faults.json` is named, with the place where it is."""
+"""The first error of a body with several, with its place, as in `faults.json`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Following a command to its end, over TCP: losses, failures, what others have set off, and what comes too early."""
+"""Following a command to its end, over TCP: losses, failures, reports of other calls, and early reports."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Following(unittest.TestCase):
         self.assertEqual([type(event) for event in events], [rt.Going, rt.Going, rt.Going, rt.Ended])
         self.assertIsNone(await following.recv())
         self.assertEqual(client.counters.reports_out_of_order, 0)
-        # It takes no more, and nobody else does.
+        # It takes no more reports, and there is no other receiver.
         robot.send(DOCKING, b'{"phase":1,"job":7}', 9, kind=3)
         calling = asyncio.ensure_future(client.get_battery())
         (request,) = await robot.frames(1)
@@ -90,7 +90,7 @@ class Following(unittest.TestCase):
             await self.report(robot, number, b'{"phase":%d,"job":7}' % phase)
         events = [event async for event in following]
         self.assertEqual([type(event) for event in events], [rt.Going, rt.Going, rt.Going, rt.Failed])
-        # From driving to idle, and nothing else: of what comes around the others nothing is said.
+        # Only the change from driving to idle counts: the spec does not restrict the others.
         self.assertEqual(client.counters.reports_out_of_order, 1)
         client.close()
         listener.close()
@@ -151,7 +151,7 @@ class Following(unittest.TestCase):
         await asyncio.wait({calling})
         robot.send(DOCKING, b'{"phase":1}', 9, kind=3)
         robot.send(0x0100, b"{}", 10)
-        # What follows has been refused, and so has what came before it.
+        # The reports after it have been refused, and so have those before it.
         await robot.frames(1)
         async with client.reports() as reports:
             await self.report(robot, 10, b'{"phase":0}')

@@ -1,4 +1,4 @@
-"""The golden frames against the frame codec: of `frames.json`, and the frames around every message."""
+"""The golden frames against the frame codec: those of `frames.json`, and the frames around every message."""
 
 from __future__ import annotations
 

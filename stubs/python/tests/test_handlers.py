@@ -1,4 +1,4 @@
-"""Handlers that fail, and what is not of the type that is to be sent."""
+"""Handlers that fail, and responses of the wrong type."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HERE = __file__
 
 
 class Failing(sample.PartialRobot):
-    """A robot whose battery is asked for in a way of the test's own."""
+    """A robot whose handler comes from the test."""
 
     def __init__(self, handler: Callable[..., Any]) -> None:
         self.handler = handler
@@ -39,7 +39,7 @@ class Failing(sample.PartialRobot):
 
 
 def line_of(function: Callable[..., Any], text: str) -> int:
-    """Where a line stands in this file."""
+    """Returns the number of a line in this file."""
     lines, first = inspect.getsourcelines(function)
     return first + next(index for index, line in enumerate(lines) if text in line)
 
@@ -110,7 +110,7 @@ class Handlers(unittest.TestCase):
     async def failed(
         self, handler: Callable[..., Any], body: bytes = b"{}", code: int = GET
     ) -> tuple[bytes, list[logging.LogRecord], list[tuple[BaseException, rt.Context]], rt.ServerCounters]:
-        """What a call is answered, and what the robot's programmer gets to know."""
+        """Returns the response to a call, and the errors that the robot's programmer gets."""
         errors: list[tuple[BaseException, rt.Context]] = []
         server = await serve(Failing(handler), on_handler_error=lambda *of: errors.append(of))
         app = await Raw.connect(server.command_address)
@@ -164,7 +164,7 @@ class Handlers(unittest.TestCase):
             for number in range(50):
                 app.send(GET, b"{}", number)
             await app.frames(50)
-            # Another command has lines of its own.
+            # Another command has a separate limit of lines.
             app.send(DOCK, b'{"dock":"A"}')
             await app.next()
         self.assertEqual((len(log.output), len(errors)), (6, 51))
@@ -311,7 +311,7 @@ async def main():
 
 asyncio.run(main())
 """
-        # The modules of these tests, wherever they were found.
+        # The modules of these tests, found in any folder.
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
         command = [sys.executable, "-c", program]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=True)

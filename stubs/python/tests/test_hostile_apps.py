@@ -15,7 +15,7 @@ GET, DOCK = 0x0100, 0x0200
 
 
 class Hangs(sample.PartialRobot):
-    """A robot whose docking takes for ever."""
+    """A robot whose docking never ends."""
 
     async def get_battery(self, context: rt.Context, request: sample.GetBatteryRequest) -> sample.GetBatteryResponse:
         return sample.GetBatteryResponse.example()
@@ -54,7 +54,7 @@ class Hostile(unittest.TestCase):
         reserved[2], unknown[2], encoding[9] = 2, 9, 7
         digest[-1] ^= 1
         app.writer.write(reserved + unknown + encoding + digest)
-        # The answer to a kind that is reserved has that kind.
+        # The response to a reserved kind has that kind.
         app.decoder = rt.Decoder(replace(sample.SAMPLE, reserved_kinds=frozenset(), report=9, stream=2))
         for answer in await app.frames(4):
             self.assertIn(b"2001", answer.data)
@@ -109,7 +109,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     async def ends_after(self, begin: bytes, drop: bytes, each: float, late: int = 1, **config: Any) -> float:
-        """How long a connection is kept on which this comes, and then a drop each so many seconds."""
+        """Returns the time until a connection is closed that sends `begin`, and then `drop` every `each` seconds."""
         server = await serve(Hangs(), **config)
         loop = asyncio.get_running_loop()
         app = await Raw.connect(server.command_address)
@@ -139,7 +139,7 @@ class Hostile(unittest.TestCase):
         self.assertTrue(29.9 < took < 32, took)
         took = await self.ends_after(begin, b"x", 1.0)
         self.assertTrue(29.9 < took < 32, took)
-        # As fast as it has to be: it is whole in the end.
+        # At the least rate the frame is completed in the end.
         took = await self.ends_after(begin, bytes(1100), 1.0, late=0)
         self.assertGreater(took, 80)
 
@@ -170,7 +170,7 @@ class Hostile(unittest.TestCase):
     async def test_what_came_before_garbage_is_answered(self) -> None:
         server = await serve(Hangs())
         app = await Raw.connect(server.command_address)
-        # So much of it that the robot has not read all when it closes.
+        # Enough bytes that the robot has not read all of them when it closes.
         app.writer.write(app.frame(GET, b"{}", 5) + b"garbage" * 500_000)
         (answer,) = await app.frames(1)
         self.assertEqual(answer.id.id, 5)
@@ -206,14 +206,14 @@ class Hostile(unittest.TestCase):
         busy = await Raw.connect(server.command_address)
         modest = await Raw.connect(server.command_address)
         await self.lives(modest)
-        # All of it is there before the robot looks at any.
+        # All of it has arrived before the robot reads any.
         busy.writer.write(busy.frame(GET, b"{}") * 5000)
         modest.send(GET, b"{}", 9)
         busy.writer.write_eof()
         (answer,) = await modest.frames(1)
         self.assertEqual(answer.id.id, 9)
         self.assertLess(server.counters.calls_succeeded, 2500)
-        # An app that sends no more is answered to its last request.
+        # An app that has ended sending gets responses up to its last request.
         self.assertEqual(len(await busy.frames(5000)), 5000)
         self.assertTrue(await busy.is_closed())
         await server.shutdown(0)
@@ -292,7 +292,7 @@ class Hostile(unittest.TestCase):
 
 
 class Large(sample.PartialRobot):
-    """A robot whose answers are long."""
+    """A robot with long responses."""
 
     async def get_battery(self, context: rt.Context, request: sample.GetBatteryRequest) -> sample.GetBatteryResponse:
         return sample.GetBatteryResponse(level=1, phase=sample.Phase.IDLE, owner="x" * (256 << 10))

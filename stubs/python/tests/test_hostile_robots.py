@@ -25,7 +25,7 @@ class Robots(unittest.TestCase):
         return listener, client, await listener.accept()
 
     async def lost(self, data: bytes, *, heard: bool = False, closes: bool = False) -> tuple[str, str, float]:
-        """What a call ends with, its loss and when, if the robot answers with these bytes."""
+        """Returns the error of a call, its loss and its time, if the robot responds with these bytes."""
         listener, client, robot = await self.meet()
         loop = asyncio.get_running_loop()
         if heard:
@@ -64,7 +64,7 @@ class Robots(unittest.TestCase):
         calling = asyncio.ensure_future(client.get_battery())
         (request,) = await robot.frames(1)
         answer = robot.encoder.encode(request.id.answer(), b'{"resultCode":1001}')
-        # It claims a million bytes, and what follows comes as if nothing were wrong.
+        # It claims a million bytes, and valid frames follow.
         robot.writer.write(answer[:11] + (1_000_000).to_bytes(4, "big") + answer[15:])
         since = loop.time()
         while not calling.done():
@@ -205,7 +205,7 @@ class Robots(unittest.TestCase):
                 robot.send(DOCKING, b'{"phase":1}', number, kind=3)
                 self.assertIn(b"1001", (await robot.frames(1))[0].data)
             self.assertEqual((client.counters.reports, client.counters.reports_late), (5, 2))
-            # The first over another connection is not late.
+            # The first report over another connection is not late.
             robot.close()
             robot = await listener.accept()
             await asyncio.sleep(9)

@@ -16,7 +16,7 @@ HEADER = 35
 
 class Limits(unittest.TestCase):
     async def answer(self, body: bytes, compress: rt.Gzip | None = None, **limited: int) -> bytes:
-        """What a robot with these limits answers; `b""` if it closes the connection."""
+        """Returns the response of a robot with these limits; `b""` if it closes the connection."""
         server = await serve(sample.ExampleRobot(), limits=limits(**limited))
         app = await Raw.connect(server.command_address)
         encoder = rt.Encoder(sample.SAMPLE, compress=compress)

@@ -1,4 +1,4 @@
-"""What an app can make a robot hold: bytes that it sends, and answers that it does not read."""
+"""Memory that an app can make a robot hold: bytes that it sends, and responses that it does not read."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from virtual import Raw, clocked, limits, serve, until
 
 GET = 0x0100
 STREAM = sample.SAMPLE.stream
-# More than a chunk of what a socket is read for.
+# More than one read of a socket returns.
 MANY = 20_000
-# A busy machine may take longer for all of it than a robot waits by default.
+# On a busy machine, sending all of it may take longer than the robot's default timeouts.
 PATIENT = {"header_timeout": 3600, "stall_timeout": 3600}
 
 
@@ -35,7 +35,7 @@ class Memory(unittest.TestCase):
         look()
         for _ in range(MANY):
             self.assertIsNotNone(await app.next())
-        # A chunk of what has come, and answers up to the limit of a transport.
+        # One chunk of received bytes, and responses up to the limit of a transport.
         self.assertLess(most, 600_000)
         await server.shutdown(0)
 
@@ -104,7 +104,7 @@ class Memory(unittest.TestCase):
             app.send(0x0401, bytes(1 << 20), number, STREAM)
             app.writer.write_eof()
             if number < 3:
-                # It is gone, and its frame is not.
+                # The connection is closed, and its frame is dropped.
                 self.assertTrue(await app.is_closed())
         await until(lambda: server.counters.data_connections == 20)
         await asyncio.sleep(1)

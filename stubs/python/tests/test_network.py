@@ -1,4 +1,4 @@
-"""A client and a robot over TCP on this machine, with a protocol of their own."""
+"""A client and a robot over TCP on this machine, with the sample protocol."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Network(AsyncCase):
         self.assertEqual(going_on, set())
 
     async def test_an_attempt_that_fails_in_any_way_is_a_connect_error(self) -> None:
-        # Neither can be encoded as the name of a host.
+        # Neither can be encoded as a host name.
         for host in ("x" * 64 + ".example", "a..b"):
             with self.subTest(host=host), self.assertRaises(rt.ConnectError) as caught:
                 await connection.Connection(TOY, ClientConfig(host=host)).connect()
@@ -241,7 +241,7 @@ class Network(AsyncCase):
             while robot.counters.connections == 0:
                 await asyncio.sleep(0)
             app.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-        # The robot has not been told of the reset yet.
+        # The robot has not noticed the reset yet.
         await asyncio.wait_for(robot.shutdown(0), PATIENCE)
 
     async def test_a_body_too_deep_is_refused_and_the_connection_stays(self) -> None:
@@ -255,7 +255,7 @@ class Network(AsyncCase):
 
     @unittest.skipUnless(shutil.which("openssl"), "there is no openssl here to make a certificate with")
     async def test_over_tls_it_is_the_same(self) -> None:
-        # The one whose handshake fails is a line of its log.
+        # The failed handshake is a line of asyncio's log.
         log = logging.getLogger("asyncio")
         self.addCleanup(log.setLevel, log.level)
         log.setLevel(logging.CRITICAL)
@@ -307,7 +307,7 @@ class Network(AsyncCase):
         sent = await from_apps.recv()
         assert sent is not None
         self.assertEqual(sent.data, blank)
-        # All of that went over the wire in few bytes.
+        # All of that took few bytes on the wire.
         self.assertLess(robot.counters.bytes_in + robot.counters.bytes_out, 100_000)
         client.close()
         await robot.shutdown(0)

@@ -1,4 +1,4 @@
-"""The generated package as a whole: its examples, tables, names, and where its comments point to."""
+"""The generated package as a whole: its examples, tables, names, and the places that its comments point to."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Package(unittest.TestCase):
             self.assertTrue(rows)
             for row in rows:
                 row.validate()
-            # Whoever changes a row changes nobody else's.
+            # Each call returns a new list, so changing one does not change another.
             self.assertIsNot(table()[0], rows[0])
 
     def test_all_that_is_said_to_be_there_is_there(self) -> None:

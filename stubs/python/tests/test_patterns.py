@@ -1,4 +1,4 @@
-"""Patterns match what `conformance/patterns.json` says, as in all languages."""
+"""Patterns match as `conformance/patterns.json` specifies, in all languages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The session scripts of the level `peer`, against the whole client and robot: over a pipe, on a clock of theirs."""
+"""The session scripts of level `peer`, against the whole client and robot, over a pipe and with a virtual clock."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ RESULTS = {"success": 1001, "protocol": 2001, "timeout": 2002, "invalid": 2003, 
 
 
 class Loop(asyncio.SelectorEventLoop):
-    """Its clock stands still unless the script advances it."""
+    """An event loop whose clock only the script advances."""
 
     now = 0.0
 
@@ -268,7 +268,7 @@ class Run:
         self.pipe.protocol.data_received(rt.Encoder(TOY).encode(frame, json.dumps(body).encode()))
 
     def drain(self) -> None:
-        """What the peer under test has sent."""
+        """Collects the frames that the peer under test has sent."""
         while self.pipe is not None:
             frame = self.pipe.decoder.next()
             if frame is None:
@@ -304,7 +304,7 @@ class Run:
             task.cancel()
 
     def filled(self, event: Any) -> Any:
-        """An expected event with the id of its request."""
+        """Returns an expected event with the id of its request."""
         for kind in {"sends", "again"}.intersection(event if isinstance(event, dict) else ()):
             name = event[kind]["as"]
             frame = next((frame for one, _, frame in reversed(self.requests) if one == name), None)

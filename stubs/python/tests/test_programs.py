@@ -1,4 +1,4 @@
-"""The programs as their users run them: app and robot against each other and against those of Rust, and the tool."""
+"""The programs as their users run them: app and robot with each other and with those of Rust, and the tool."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from support import AsyncCase
 
 HERE = Path(__file__).resolve().parents[1]
 PATIENCE = 60.0
-# Where the example programs of Rust are, if they have been built.
+# Folder of the Rust example programs, if they are built.
 RUST = os.environ.get("FC_RUST_EXAMPLES")
 
 Process = asyncio.subprocess.Process
@@ -39,11 +39,11 @@ def end(process: Process) -> None:
 
 
 async def refuses(port: int) -> bool:
-    """Whether nobody listens at a port."""
+    """Returns `True` if no program listens on a port."""
     try:
         _, writer = await asyncio.open_connection("127.0.0.1", port)
     except OSError as error:
-        # One that was about to be accepted is reset.
+        # A connection that was about to be accepted is reset.
         return isinstance(error, ConnectionRefusedError)
     writer.close()
     return False
@@ -75,7 +75,7 @@ class Programs(AsyncCase):
         process.send_signal(signal.SIGTERM)
         code, out, _ = await outcome(process)
         self.assertEqual(code, 0)
-        # Every report is acknowledged; the languages spell it in their own way.
+        # Every report is acknowledged; each language prints that with another spelling.
         self.assertEqual(out.lower().count("acknowledged"), len(fc.FC.reports_by_code), out)
 
     async def test_the_app_tours_the_robot(self) -> None:
@@ -145,7 +145,7 @@ class Programs(AsyncCase):
                 moving = asyncio.ensure_future(client.start_recharge())
                 await asyncio.wait_for(client.reports().recv(), PATIENCE)
                 process.send_signal(number)
-                # It has taken note, and waits for what it has begun.
+                # It has noticed the signal, and waits for the requests in handlers.
                 while not await refuses(int(commands)):
                     pass
                 self.assertFalse(calling.done())
@@ -161,7 +161,7 @@ class Programs(AsyncCase):
             process, _, _ = await self.robot("python")
             ending = asyncio.ensure_future(process.wait())
             while not ending.done():
-                # To the last moment of its life. `send_signal` would take its exit status from the event loop.
+                # Until the process ends. `send_signal` would take its exit status from the event loop.
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(process.pid, number)
                 await asyncio.sleep(0.001)

@@ -1,4 +1,4 @@
-"""The examples of the README do what it says, and both languages have the same ones."""
+"""The examples of the README print the output shown, and both languages have the same ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import fc_runtime
 
 HERE = Path(__file__).resolve().parents[1]
 EXAMPLE = re.compile(r"```python\n(.*?)```\n\n```text output\n(.*?)```", re.DOTALL)
-# What is shown and not run here.
+# Commands that are shown, but not run here.
 SHELL = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 
 

@@ -1,4 +1,4 @@
-"""The session scripts of the level `session`, against the session of the runtime."""
+"""The session scripts of level `session`, against the session of the runtime."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ KINDS = {"command": PROTOCOL.command, "report": PROTOCOL.report, "stream": PROTO
 
 
 class Run:
-    """One script. Its times are in milliseconds, those of the session in seconds."""
+    """One script. Its times are in milliseconds, the session's in seconds."""
 
     def __init__(self, given: dict[str, Any]) -> None:
         ack = given.get("ack", {"timeout": 2000, "retries": 3})
@@ -58,7 +58,7 @@ class Run:
                 assert wait <= then["next_due_by"], (number, step, wait)
 
     def filled(self, event: Any) -> Any:
-        """An expected event with the id of its request."""
+        """Returns an expected event with the id of its request."""
         for kind in {"sends", "again"}.intersection(event):
             return {kind: {"as": event[kind]["as"], "id": self.requests[event[kind]["as"]].id, **event[kind]}}
         return event

@@ -1,4 +1,4 @@
-"""Every setting and call option with wrong values: each is refused where it is given."""
+"""Wrong values of every setting and call option: each is refused where it is given."""
 
 from __future__ import annotations
 

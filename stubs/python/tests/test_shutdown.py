@@ -1,4 +1,4 @@
-"""The end of a robot under load: what is being handled is answered, and nothing takes longer than the grace."""
+"""The end of a robot under load: requests in handlers get their responses, and nothing takes longer than the grace."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GET = 0x0100
 
 
 class Slow(sample.PartialRobot):
-    """A robot whose handlers take as long as they are let."""
+    """A robot whose handlers take as long as the test lets them."""
 
     def __init__(self) -> None:
         self.go_on = asyncio.Event()

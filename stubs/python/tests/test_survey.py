@@ -1,4 +1,4 @@
-"""Depth and values are counted in one pass that stops at the limit, and as a reader of single letters counts them."""
+"""Depth and values are counted in one pass that stops at the limit, with the result of a reader of single letters."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LONG = 70_000
 
 
 class Reader:
-    """A reader that counts as the one of Rust does, letter by letter."""
+    """A reader that counts like the one of Rust, letter by letter."""
 
     def __init__(self, text: str, depth: int, values: int) -> None:
         self.text, self.depth, self.values = text, depth, values
@@ -70,7 +70,7 @@ class Reader:
 
 
 def read(text: str, depth: int, values: int) -> str:
-    """The fault that a reader finds in a JSON text."""
+    """Returns the error that a reader finds in a JSON text."""
     try:
         Reader(text, depth, values).value()
     except ValueError as error:
@@ -87,7 +87,7 @@ def surveyed(text: str, depth: int, values: int) -> str:
 
 
 def some(chance: random.Random, levels: int) -> str:
-    """A JSON text with brackets in many places."""
+    """Returns a JSON text with brackets in many places."""
     space = chance.choice(["", "", "", " ", "\n"])
     if levels == 0 or chance.random() < 0.2:
         texts = [
@@ -184,7 +184,7 @@ class Survey(unittest.TestCase):
         }
         for name, (text, expected) in texts.items():
             with self.subTest(name):
-                # Some of them once took hours: the time for all tests guards against that.
+                # Some of them once took hours: the time limit of all tests guards against that.
                 self.assertEqual(body(text), expected)
 
     def test_depth_has_a_bound_whatever_is_configured(self) -> None:

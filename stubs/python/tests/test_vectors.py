@@ -1,4 +1,4 @@
-"""All golden messages of the protocol, read and written as the generated types."""
+"""All golden messages of the protocol, read and written with the generated types."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An event loop whose clock jumps to the next timer as soon as nothing happens, and a peer that speaks in frames."""
+"""An event loop whose clock jumps to the next timer when there is no activity, and a peer that speaks in frames."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ import sample
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
 
-# So long, in seconds, nothing has to happen before the clock jumps.
+# Seconds without activity before the clock jumps.
 _QUIET = 0.005
-# Seconds of that clock after which a test fails that waits for what does not come.
+# Seconds of that clock after which a waiting test fails.
 _PATIENCE = 5_000.0
-# The same in seconds of everybody.
+# The same in real seconds.
 _REAL_PATIENCE = 60.0
 
 
@@ -38,7 +38,7 @@ class _Selector(selectors.DefaultSelector):
 
 
 class Loop(asyncio.SelectorEventLoop):
-    """Its timers cost no time."""
+    """An event loop whose timers cost no time."""
 
     def __init__(self) -> None:
         self._jumping = _Selector()
@@ -68,7 +68,7 @@ def clocked(test: Callable[[Any], Awaitable[None]]) -> Callable[[Any], None]:
             loop.run_until_complete(asyncio.sleep(0.1))
             loop.close()
             with warnings.catch_warnings():
-                # What the other side of a test has left open is of no interest.
+                # Resources that the other side of a test left open do not matter.
                 warnings.simplefilter("ignore", ResourceWarning)
                 gc.collect()
 
@@ -100,7 +100,7 @@ class Raw:
         self.writer.write(self.encoder.encode(frame.id.answer(), body))
 
     async def next(self) -> rt.Frame | None:
-        """The next frame; `None` at the end."""
+        """Returns the next frame; `None` at the end."""
         while (frame := self.decoder.next()) is None:
             try:
                 data = await self.reader.read(65536)
@@ -116,7 +116,7 @@ class Raw:
         return [one for one in found if one is not None]
 
     async def is_closed(self) -> bool:
-        """Waits for the other side to end the connection; false if a frame comes instead."""
+        """Waits for the other side to end the connection. Returns `False` if a frame comes instead."""
         return await self.next() is None
 
     def close(self) -> None:
@@ -124,7 +124,7 @@ class Raw:
 
 
 class Listener:
-    """A robot of the test's own: accepts connections, and speaks in frames."""
+    """A robot that the test controls: accepts connections, and speaks in frames."""
 
     def __init__(self) -> None:
         self.accepted: asyncio.Queue[Raw] = asyncio.Queue()
@@ -145,19 +145,19 @@ class Listener:
 
 
 async def serve(robot: rt.Robot, **config: Any) -> rt.Server:
-    """A robot at free ports."""
+    """Returns a robot on free ports."""
     server = rt.Server(robot, rt.ServerConfig(**{"address": "127.0.0.1", "command_port": 0, "data_port": 0, **config}))
     await server.bind()
     return server
 
 
 def limits(**changed: Any) -> rt.Limits:
-    """Those of the sample, but for these."""
+    """Returns the limits of the sample with these changes."""
     return replace(sample.SAMPLE.defaults.limits, **changed)
 
 
 async def until(condition: Callable[[], bool]) -> None:
-    """Gives way until this holds; nothing else may be waited for meanwhile, or the clock stands still."""
+    """Yields until this holds. No other task may wait meanwhile, or the clock stops."""
     since = time.monotonic()
     while not condition():
         await asyncio.sleep(0)

@@ -7,13 +7,13 @@ import { fileURLToPath } from 'node:url'
 import { median } from './measure.mjs'
 import { peers } from './peers.mjs'
 
-/** How many calls are in flight at a time. */
+/** Numbers of calls in flight. */
 const IN_FLIGHT = [1, 64]
 
 const program = fileURLToPath(new URL('peer.mjs', import.meta.url))
 const pins = availableParallelism() > 1 && spawnSync('taskset', ['-c', '0,1', 'true']).status === 0
 
-/** A process on a core, and what it says first. */
+/** Starts a process on a core, and returns its first line. */
 async function start(core, ...words) {
   const command = [...(pins ? ['taskset', '-c', String(core)] : []), process.execPath, program, ...words]
   const child = spawn(command[0], command.slice(1), { stdio: ['ignore', 'inherit', 'inherit', 'ipc'] })
@@ -25,14 +25,14 @@ async function start(core, ...words) {
   return { ask, first: await ask(), stop: () => child.disconnect() }
 }
 
-/** The server and the caller of a peer. */
+/** Starts the server and the caller of a peer. */
 async function pair(name) {
   const server = await start(0, 'serve', name)
   const caller = await start(1, 'call', name, String(server.first))
   return { server, caller }
 }
 
-/** One round of one peer: how long it took, and what that cost both processes. */
+/** Runs one round of one peer. Returns its duration and the CPU time of both processes. */
 async function round({ server, caller }, inFlight, calls) {
   await server.ask('begin')
   await caller.ask('begin')
@@ -41,7 +41,7 @@ async function round({ server, caller }, inFlight, calls) {
   return { seconds, p50, p99, cpu, rate: calls / seconds, cpuPerCall: cpu / calls }
 }
 
-/** What calls cost with each number in flight, and with each peer. */
+/** Returns the cost of calls for each number in flight, and each peer. */
 export async function calls({ rounds, seconds }) {
   const pairs = {}
   try {
@@ -50,7 +50,7 @@ export async function calls({ rounds, seconds }) {
     for (const inFlight of IN_FLIGHT) {
       const counts = {}
       for (const name of Object.keys(pairs)) {
-        // Until all is compiled, and to find out how many calls a round is.
+        // Warms up, and finds the number of calls for a round.
         let count = 64 * inFlight
         let tried = await round(pairs[name], inFlight, count)
         while (tried.seconds < seconds) tried = await round(pairs[name], inFlight, (count *= 2))
@@ -66,7 +66,7 @@ export async function calls({ rounds, seconds }) {
         peers: Object.keys(pairs).map((name) => ({
           name,
           rate: middle(name, 'rate'),
-          // A window of the floor is no call: it has no time of its own.
+          // A window of the floor is not a single call, so it has no latency.
           p50: peers[name].windows && inFlight > 1 ? null : middle(name, 'p50'),
           p99: peers[name].windows && inFlight > 1 ? null : middle(name, 'p99'),
           cpu: middle(name, 'cpuPerCall'),

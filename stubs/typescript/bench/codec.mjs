@@ -1,4 +1,4 @@
-// Frames to typed messages and back, beside `JSON.parse` and `JSON.stringify` with MD5 over the same bytes.
+// Frames to typed messages and back, compared with `JSON.parse` and `JSON.stringify` with MD5 over the same bytes.
 
 import assert from 'node:assert/strict'
 import { createHash, hash } from 'node:crypto'
@@ -10,7 +10,7 @@ import * as schemas from '../dist/generated/schemas.js'
 import { wire } from '../dist/generated/wire.js'
 import { measure } from './measure.mjs'
 
-/** The messages: names of files in `bench/frames`, and what they hold. */
+/** The messages: names of files in `bench/frames`, and their schemas. */
 const MESSAGES = {
   small: schemas.GetStationResponse,
   medium: schemas.ListStationsResponse,
@@ -19,24 +19,24 @@ const MESSAGES = {
 
 const frameOf = (name) => readFileSync(new URL(`../../../bench/frames/${name}.bin`, import.meta.url))
 
-/** The digest, a character for each byte: the fastest way that Node.js has. */
+/** The digest, one character per byte: the fastest way in Node.js. */
 const md5 =
   typeof hash === 'function'
     ? (data) => hash('md5', data, 'latin1')
     : (data) => createHash('md5').update(data).digest('latin1')
 
-/** Where the header ends, and where its digest begins and ends. */
+/** Length of the header, and place of its digest. */
 const header = wire.frame.headerLength
 const { offset, size } = wire.frame.header.find(({ role }) => role === 'digest')
 
-/** The least that reading takes: the digest checked, and all of the JSON parsed. */
+/** The least work of reading: check the digest and parse all of the JSON. */
 function leastDecode(frame) {
   const body = frame.subarray(header)
   if (md5(body) !== frame.latin1Slice(offset, offset + size)) throw new Error('another digest')
   return JSON.parse(body.utf8Slice(0, body.length))
 }
 
-/** The least that writing takes: all of the JSON made, and its digest put into a header that is ready but for that. */
+/** The least work of writing: make all of the JSON, and put its digest into a prepared header. */
 function leastEncode(frame, message) {
   const text = JSON.stringify(message)
   const body = Buffer.from(text)
@@ -47,7 +47,7 @@ function leastEncode(frame, message) {
   return made
 }
 
-/** What each message costs, in microseconds. */
+/** Returns the cost of each message, in microseconds. */
 export function codec(effort) {
   const limits = wire.defaults.limits
   const framing = new Framing(wire.frame, limits, nodePlatform.algorithms)
@@ -65,7 +65,7 @@ export function codec(effort) {
     const { message } = decode()
     const encode = () => framing.encode(id, bodies.writeResponse(wire.results.success, struct, message), null)
     const plain = leastDecode(frame)
-    // Each side writes what it reads, all of it; JavaScript has no `.0` behind a whole number in a string.
+    // Each side writes all that it reads. JavaScript has no `.0` after a whole number in a string.
     assert.deepEqual(decode(encode()).message, message)
     assert.ok(Math.abs(encode().length - frame.length) < frame.length / 100)
     assert.deepEqual(leastEncode(frame, plain), frame)

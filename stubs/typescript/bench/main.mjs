@@ -1,4 +1,4 @@
-// Measures the package beside JSON and MD5 alone, and beside gRPC: `main.mjs [--smoke | --report]`.
+// Compares the package with JSON and MD5 alone, and with gRPC: `main.mjs [--smoke | --report]`.
 
 import { readFileSync, writeFileSync } from 'node:fs'
 import { availableParallelism, cpus } from 'node:os'

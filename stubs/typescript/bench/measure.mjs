@@ -1,12 +1,12 @@
-// Work on one thread, in CPU time of this process, the collector's included.
+// Work on one thread, in CPU time of this process, garbage collection included.
 
-/** The middle of some figures. */
+/** Returns the median. */
 export function median(values) {
   const sorted = [...values].sort((a, b) => a - b)
   return sorted[sorted.length >> 1] ?? Number.NaN
 }
 
-/** The same figures in another order. */
+/** Returns the figures in random order. */
 function shuffled(values) {
   const mixed = [...values]
   for (let index = mixed.length - 1; index > 0; index--) {
@@ -16,7 +16,7 @@ function shuffled(values) {
   return mixed
 }
 
-/** Microseconds of CPU that `times` runs take. */
+/** Returns the CPU time of `times` runs, in microseconds. */
 function cost(run, times) {
   const before = process.cpuUsage()
   for (let count = 0; count < times; count++) run()
@@ -25,8 +25,8 @@ function cost(run, times) {
 }
 
 /**
- * Microseconds that each of some cases takes, the median of its rounds. The cases take turns, in another order each round,
- * so that what disturbs one disturbs all.
+ * Returns the time of each case in microseconds, the median of its rounds. The cases take turns, in another order each
+ * round. A disturbance then affects all of them alike.
  */
 export function measure(cases, { rounds, batch }) {
   const names = Object.keys(cases)
@@ -35,7 +35,7 @@ export function measure(cases, { rounds, batch }) {
   for (const name of names) {
     times[name] = 1
     found[name] = []
-    // Until it is compiled and takes as long as a batch should.
+    // Repeats until the case is compiled and takes as long as a batch should.
     while (cost(cases[name], times[name]) < batch * 1000) times[name] *= 2
   }
   for (let round = 0; round < rounds; round++) {

@@ -1,11 +1,11 @@
-// A process that serves, or that calls, as the process says that started it: `peer.mjs serve PEER`, `peer.mjs call PEER PORT`.
+// A process that serves or calls, as its arguments specify: `peer.mjs serve PEER`, `peer.mjs call PEER PORT`.
 
 import { peers } from './peers.mjs'
 
 const [does, name, port] = process.argv.slice(2)
 const peer = peers[name]
 
-/** Makes so many calls with so many in flight. */
+/** Makes `calls` calls, `inFlight` at a time. */
 async function drive(call, inFlight, calls) {
   const latencies = new Float64Array(calls)
   let begun = 0
@@ -27,7 +27,7 @@ async function drive(call, inFlight, calls) {
 
 const connections = new Map()
 
-/** A connection for windows of this size, or one for all. */
+/** Returns a connection for windows of this size, or one for all. */
 async function connection(inFlight) {
   const window = peer.windows ? inFlight : 1
   if (!connections.has(window)) connections.set(window, await peer.connect(Number(port), window))

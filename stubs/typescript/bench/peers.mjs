@@ -1,4 +1,5 @@
-// Who answers and who asks: this package, gRPC, and the bare sockets of Node.js, with the same question and the same answer.
+// Servers and callers: this package, gRPC, and the bare sockets of Node.js, with the same request and the same
+// response.
 
 import { connect, createServer } from 'node:net'
 import { fileURLToPath } from 'node:url'
@@ -13,7 +14,7 @@ const STATION = 1_671_124_918_008
 const NAME = 'gate1'
 const { success } = wire.results
 
-/** A robot that answers for a station, with a message made for each call. */
+/** A robot that returns a station, with a new message for each call. */
 class Robot {
   getStation({ data }) {
     return {
@@ -86,11 +87,11 @@ const grpcJs = {
   },
 }
 
-/** Bytes of the frame that asks, and of the frame that answers. */
+/** Bytes of the request's frame, and of the response's. */
 const ASKS = 95
 const ANSWERS = 204
 
-/** As many bytes, a window of requests in one write, and nothing done with them. */
+/** The floor: as many bytes, a window of requests in one write, without any processing. */
 const raw = {
   serve() {
     const answers = Buffer.alloc(64 * ANSWERS, 1)
@@ -128,5 +129,8 @@ const raw = {
   },
 }
 
-/** All of them. Each serves at a port, and connects to one: what it gives makes one call, or a window of them where `windows`. */
+/**
+ * All peers. Each serves on a port and connects to one. The connection makes one call, or a window of them with
+ * `windows`.
+ */
 export const peers = { raw: { ...raw, windows: true }, fc, 'grpc-js': grpcJs }

@@ -1,5 +1,5 @@
-// An app that tries out a robot: calls every command of the spec with its example, takes the robot's reports and the picture of
-// a map, and prints what came of each.
+// An app that tries out a robot. It calls every command with the spec's example, receives the robot's reports and the
+// picture of a map, and prints each result.
 
 import { CallError, Client, Fc, commands } from 'fc-protocol'
 import type { AnyReport, DataConnection, Reports } from 'fc-protocol'
@@ -15,10 +15,10 @@ Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--gzip-f
 Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed.
 Without --lang, the language of the environment.`
 
-/** How long the app waits for what the robot sends of its own accord, in milliseconds. */
+/** Time the app waits for reports and pictures, in milliseconds. */
 const PATIENCE = 20_000
 
-/** What the table says. */
+/** Words of the table. */
 const WORDS = {
   zh: {
     head: ['功能码', '类型', '名称', '说明', '结果'],
@@ -40,7 +40,7 @@ const WORDS = {
   },
 }
 
-/** What came of each operation so far. */
+/** Results of the operations so far. */
 class Tour {
   readonly lang: Args['lang']
   readonly words: (typeof WORDS)[Args['lang']]
@@ -67,7 +67,7 @@ class Tour {
 }
 
 await main(USAGE, async (args) => {
-  // Closed at the end, and also when something fails: an open connection keeps the program running.
+  // Closed at the end and after an error: an open connection keeps the program running.
   await using client = await Client.connect(nodePlatform, { host: args.host, gzip: args.gzip, ...ports(args) })
   const reports = client.reports()
   // #region data
@@ -106,7 +106,7 @@ async function receiveAll(reports: Reports<AnyReport>, tour: Tour): Promise<void
   }
 }
 
-/** Waits for the picture that the call for a map image has ordered. Its digest has been verified by the time it is here. */
+/** Waits for the picture requested by the call for a map image. Its digest has already been verified. */
 async function receivePicture(data: DataConnection, tour: Tour): Promise<void> {
   const frame = await within(PATIENCE, 'no picture came', data.recv())
   if (frame.code === commands.getMapImage.code)

@@ -1,5 +1,5 @@
-// An app for trying out a connection under trouble that somebody else makes: reads on while the connection is cut, gives calls up,
-// and calls on while the robot ends.
+// An app for trying out a connection in trouble, which another program causes. It goes on reading while the connection
+// is cut, aborts calls, and goes on calling while the robot ends.
 
 import { CallError, Client } from 'fc-protocol'
 import { nodePlatform } from 'fc-protocol/node'
@@ -13,7 +13,7 @@ From "reading" on the connection may be cut; "calling" asks for the robot to be 
 
 /** Calls in flight at a time. */
 const AT_ONCE = 64
-/** Reads that are to be answered though the connection is cut. */
+/** Reads that get a response although the connection is cut. */
 const READS = 1000
 
 await main(USAGE, async (args) => {
@@ -27,19 +27,19 @@ await main(USAGE, async (args) => {
     console.log(`given up: ${AT_ONCE}, and the next one answered`)
   }
 
-  // Another one, which does not come back: that the robot has ended ends its calls.
+  // A client without reconnecting: its calls end when the robot has ended.
   await using client = await Client.connect(nodePlatform, { ...config, reconnect: null })
   console.log('calling')
   const answered = await callToTheEnd(client)
   console.log(`ended: ${answered} answered, ${AT_ONCE} lost`)
 })
 
-/** So many of them at a time. */
+/** Runs `AT_ONCE` of them at a time. */
 async function all(work: () => Promise<void>): Promise<void> {
   await Promise.all(Array.from({ length: AT_ONCE }, work))
 }
 
-/** Each call is a read, so it is sent again after a loss, and every single one is answered. */
+/** Each call only reads, so it is sent again after a loss, and every call gets its response. */
 async function read(client: Client): Promise<void> {
   let left = READS
   await all(async () => {
@@ -47,7 +47,7 @@ async function read(client: Client): Promise<void> {
   })
 }
 
-/** Sends calls and aborts them before an answer can have come; the connection serves on. */
+/** Sends calls and aborts them before a response can come. The connection stays usable. */
 async function giveUp(client: Client): Promise<void> {
   const controller = new AbortController()
   const calls = Array.from({ length: AT_ONCE }, () => client.getRobotSn({}, { signal: controller.signal }))
@@ -57,8 +57,8 @@ async function giveUp(client: Client): Promise<void> {
 }
 
 /**
- * Calls until the robot has gone, and tells how many were answered. Every call has an end, and the end of the last ones says that
- * the connection was lost.
+ * Calls until the robot has gone, and returns the number of responses. Every call ends, the last ones because the
+ * connection was lost.
  */
 async function callToTheEnd(client: Client): Promise<number> {
   let answered = 0

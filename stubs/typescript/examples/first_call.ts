@@ -1,4 +1,5 @@
-// A robot and an app on this machine: the app asks for the serial number, and the robot reports how recharging goes.
+// A robot and an app on this machine: the app reads the serial number, and the robot reports the progress of
+// recharging.
 
 import { Client, Refusal, Reporter, ResultCode, nameOf, schemas, serve } from 'fc-protocol'
 import type { Answer, Client as App, GetRobotSnResponse, PartialRobot, StartRechargeResponse } from 'fc-protocol'
@@ -40,7 +41,7 @@ await listening
 client.close()
 await server.shutdown(1000)
 
-/** Takes the first report about recharging. All have been acknowledged by the time they are here. */
+/** Takes the first report about recharging. Reports are already acknowledged when they arrive here. */
 async function listen(client: App): Promise<void> {
   // #region listen
   for await (const report of client.reports()) {

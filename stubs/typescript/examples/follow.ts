@@ -3,7 +3,7 @@
 import { CallError, Client, Reporter, commands, nameOf, schemas, serve } from 'fc-protocol'
 import { nodePlatform } from 'fc-protocol/node'
 
-// The robot of this example sets off, and says how far it has come.
+// The robot of this example starts to recharge, and reports its progress.
 const server = await serve(
   nodePlatform,
   { startRecharge: () => commands.startRecharge.responseExample() },
@@ -31,7 +31,7 @@ try {
       case 'interrupted':
       case 'resumed':
       case 'missed': {
-        // What was reported meanwhile may never come: ask.
+        // Reports sent meanwhile may be lost: query the state.
         const { data } = await client.getRechargeStatus()
         console.log(`now: ${nameOf(schemas.RechargeStatus, data.rechargeStatus) ?? data.rechargeStatus}`)
       }
@@ -46,7 +46,7 @@ try {
 client.close()
 await server.shutdown(1000)
 
-/** What the robot does meanwhile. */
+/** The robot's actions meanwhile. */
 async function drive(): Promise<void> {
   const reporter = new Reporter(server)
   for (const [rechargeStatus, errorStatus] of [

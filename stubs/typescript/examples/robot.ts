@@ -1,5 +1,6 @@
-// A robot to try an app against, and nothing else: answers every command with the spec's example, also those that would move a
-// real one, pushes every report once to each app, and sends the picture of a map over the data port to any app that asks for one.
+// A robot for trying out an app. It responds to every command with the spec's example, even to those that move a real
+// robot. It pushes every report once to each app. If an app requests the picture of a map, it sends one over the data
+// port.
 
 import { ExampleRobot, Fc, PushError, commands, serve } from 'fc-protocol'
 import type { Context, Robot, Server } from 'fc-protocol'
@@ -7,7 +8,7 @@ import { nodePlatform } from 'fc-protocol/node'
 import { setTimeout as sleep } from 'node:timers/promises'
 import { main, ports } from './support.ts'
 
-/** What is being handled when the robot is asked to end may take so long, in milliseconds. */
+/** Time for requests in handlers when the robot is asked to end, in milliseconds. */
 const GRACE = 5000
 
 const USAGE = `Responds to every command with the example in the spec. Nothing moves: this is for trying out apps.
@@ -58,7 +59,7 @@ await main(USAGE, async (args) => {
     })
   })
   await (args.once ? Promise.race([asked, lastLeft(server, known)]) : asked)
-  // Whoever asks twice does not want to wait.
+  // A second signal ends the robot at once.
   process.once('SIGINT', () => void server.close())
   process.once('SIGTERM', () => void server.close())
   await server.shutdown(GRACE)
@@ -66,7 +67,7 @@ await main(USAGE, async (args) => {
   process.exit()
 })
 
-/** Answers with the examples, and tells of every request. There is nothing here that could move. */
+/** Responds with the examples, and calls back with each request. There is no motion. */
 function attentive(delay: number, asked: (context: Context) => void): Robot {
   return new Proxy(new ExampleRobot({ pretendMotion: true }), {
     get(robot, name) {
@@ -100,7 +101,7 @@ async function pushAll(server: Server, app: number): Promise<void> {
   }
 }
 
-/** Sends a picture to the app that has asked for one, under the id of its request. */
+/** Sends a picture to the app that requested one, under the id of its request. */
 async function sendPicture(server: Server, { connection, code, id }: Context, bytes: Uint8Array): Promise<void> {
   for (let tries = 0; tries < 40; tries++) {
     try {
@@ -113,7 +114,7 @@ async function sendPicture(server: Server, { connection, code, id }: Context, by
         console.log(`picture: ${problem.message}`)
         return
       }
-      // The app may ask before its data connection has been accepted.
+      // The app's request may come before its data connection has been accepted.
       await sleep(50)
     }
   }

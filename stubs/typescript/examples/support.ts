@@ -1,26 +1,26 @@
-// What the examples share: their command line, and a table whose columns line up.
+// Shared by the examples: their command line, and a table with aligned columns.
 
-/** The command line: which robot, at which ports. */
+/** The command line: address and ports of the robot, and options. */
 export interface Args {
   /** Address of the robot. */
   host: string
-  /** Port of commands; the spec's where none is given. */
+  /** Port of commands; absent for the spec's. */
   commandPort?: number
-  /** Port of streams; the spec's where none is given. */
+  /** Port of streams; absent for the spec's. */
   dataPort?: number
-  /** Whether the robot ends once its app has left. */
+  /** Ends the robot once its app has left. */
   once: boolean
-  /** How long the robot takes over each command, in milliseconds. */
+  /** Time the robot takes for each command, in milliseconds. */
   delay: number
-  /** From how many bytes on something is compressed; the default where none is given. */
+  /** Least number of bytes to compress; absent for the default. */
   gzip: { fromBytes?: number }
-  /** How many times as wide and high the robot's picture is. */
+  /** Factor for the width and height of the robot's picture. */
   pictureScale: number
-  /** In which language it speaks. */
+  /** Language of the output. */
   lang: 'zh' | 'en'
 }
 
-/** Runs an example as its command line says; a wrong one ends it with 2, a fault with 1. */
+/** Runs an example with its command line. Exits with 2 for a wrong command line, with 1 for an error. */
 export async function main(usage: string, run: (args: Args) => Promise<void>): Promise<void> {
   let args: Args
   try {
@@ -43,7 +43,7 @@ export async function main(usage: string, run: (args: Args) => Promise<void>): P
   }
 }
 
-/** The language of the environment, as POSIX has it. */
+/** Returns the language of the environment, as POSIX specifies. */
 function langOfEnvironment(): Args['lang'] {
   const { LC_ALL, LC_MESSAGES, LANG } = process.env
   return [LC_ALL, LC_MESSAGES, LANG].find((locale) => locale)?.startsWith('zh') ? 'zh' : 'en'
@@ -86,13 +86,13 @@ function parse(words: readonly string[]): Args {
   return args
 }
 
-/** The ports that are given, as settings. */
+/** Returns the given ports as settings. */
 export const ports = ({ commandPort, dataPort }: Args): { commandPort?: number; dataPort?: number } => ({
   ...(commandPort === undefined ? {} : { commandPort }),
   ...(dataPort === undefined ? {} : { dataPort }),
 })
 
-/** Columns of a text on a terminal, where a Chinese character takes two. */
+/** Returns the columns of a text on a terminal, where a Chinese character takes two. */
 const width = (text: string): number =>
   [...text].reduce(
     (sum, character) =>
@@ -105,7 +105,7 @@ const width = (text: string): number =>
     0,
   )
 
-/** Rows of cells, each column as wide as its widest cell. */
+/** Formats rows of cells, with each column as wide as its widest cell. */
 export function table(rows: readonly (readonly string[])[]): string {
   const widths = (rows[0] ?? []).map((_, column) => Math.max(...rows.map((row) => width(row[column] ?? ''))))
   const line = (row: readonly string[]): string =>
@@ -116,7 +116,7 @@ export function table(rows: readonly (readonly string[])[]): string {
   return rows.map(line).join('\n')
 }
 
-/** A value, unless it takes longer than this many milliseconds. */
+/** Returns the value, or rejects after this many milliseconds. */
 export async function within<T>(milliseconds: number, what: string, value: Promise<T>): Promise<T> {
   let timer: NodeJS.Timeout | undefined
   const late = new Promise<never>((_, reject) => {

@@ -1,8 +1,8 @@
-// Waiting: for a time, and for something to change.
+// Waiting for a time, or for a change.
 
 import type { Clock } from './platform.ts'
 
-/** Rings when something is due. Most that is due is over before it is: its timer is then moved on when it fires, and not before. */
+/** Calls back when something is due. Most due times move before they pass, so the timer is reset only when it fires. */
 export class Alarm {
   private readonly clock: Clock
   private readonly due: () => number | null
@@ -10,20 +10,20 @@ export class Alarm {
   private armed: number | null = null
   private cancel: (() => void) | null = null
 
-  /** `due` says when, if anything is, and `ring` is called then. */
+  /** Creates an alarm. `due` returns the next due time, or `null`. `ring` is called at that time. */
   constructor(clock: Clock, due: () => number | null, ring: () => void) {
     this.clock = clock
     this.due = due
     this.ring = ring
   }
 
-  /** What is due may have changed. */
+  /** Checks the due time again. Call this when it may have changed. */
   look(): void {
     const due = this.due()
     if (due !== null) this.by(due)
   }
 
-  /** Something is due then, at the earliest. */
+  /** Makes sure the alarm checks at this time, at the latest. */
   by(due: number): void {
     if (this.armed !== null && this.armed <= due) return
     this.cancel?.()
@@ -37,7 +37,7 @@ export class Alarm {
     })
   }
 
-  /** Never rings again, unless it is told of something new. */
+  /** Stops the alarm. A later `by` or `look` starts it again. */
   stop(): void {
     this.cancel?.()
     this.cancel = null
@@ -45,18 +45,18 @@ export class Alarm {
   }
 }
 
-/** Something that changes, and those who wait for that. */
+/** A change that others wait for. */
 export class Change {
   private waiting: (() => void)[] = []
 
-  /** Resolves when it is next told. */
+  /** Resolves at the next `tell`. */
   wait(): Promise<void> {
     return new Promise((resolve) => {
       this.waiting.push(resolve)
     })
   }
 
-  /** Tells all who wait. */
+  /** Wakes all waiting callers. */
   tell(): void {
     if (this.waiting.length === 0) return
     const { waiting } = this
@@ -64,7 +64,7 @@ export class Change {
     for (const resolve of waiting) resolve()
   }
 
-  /** Waits until something holds, for no longer than until a time. Whether it does. */
+  /** Waits until `holds` returns true or the deadline passes. Returns the last value of `holds`. */
   async until(clock: Clock, deadline: number, holds: () => boolean): Promise<boolean> {
     let late = false
     const cancel = clock.after(Math.max(0, deadline - clock.now()), () => {
@@ -77,7 +77,7 @@ export class Change {
   }
 }
 
-/** Waits so many milliseconds, or until a signal says that nobody does any more. */
+/** Waits for `milliseconds`, or until the signal `ended` aborts. */
 export function pause(clock: Clock, milliseconds: number, ended: AbortSignal): Promise<void> {
   return new Promise((resolve) => {
     const go = (): void => {

@@ -11,7 +11,7 @@ const DIGITS = Uint8Array.from(ALPHABET, (digit) => digit.charCodeAt(0))
 const VALUES = new Uint8Array(128).fill(NONE)
 for (const [value, digit] of DIGITS.entries()) VALUES[digit] = value
 
-/** The bytes that a text stands for. Throws a `BodyError`. */
+/** Decodes base64 text. Throws a `BodyError`. */
 export function bytesOfBase64(text: string): Uint8Array {
   const { length } = text
   if (length % 4 !== 0) throw new BodyError('bad_base64', 'RFC 4648')
@@ -31,18 +31,18 @@ export function bytesOfBase64(text: string): Uint8Array {
       bytes[out++] = bits >> held
     }
   }
-  // Bits of the last digit that no byte takes: who sends them means something else.
+  // Spare bits of the last digit must be zero, otherwise the text is not the base64 of any bytes.
   if ((bits & ((1 << held) - 1)) !== 0) throw new BodyError('bad_base64', 'RFC 4648')
   return bytes
 }
 
-/** Bytes as text. */
+/** Encodes bytes as base64 text. */
 export function base64Of(bytes: Uint8Array): string {
   const { length } = bytes
   const digits = new Uint8Array(Math.ceil(length / 3) * 4)
   let out = 0
   for (let at = 0; at < length; at += 3) {
-    // Behind the end there are no bytes, and zero bits.
+    // Missing bytes after the end count as zero bits.
     const bits = ((bytes[at] ?? 0) << 16) | ((bytes[at + 1] ?? 0) << 8) | (bytes[at + 2] ?? 0)
     digits[out++] = DIGITS[bits >> 18] ?? PAD
     digits[out++] = DIGITS[(bits >> 12) & 63] ?? PAD

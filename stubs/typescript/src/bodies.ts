@@ -1,4 +1,4 @@
-// Bodies with their envelopes, as a protocol has them.
+// Bodies with the envelopes of a protocol.
 
 import { BodyError } from './fault.ts'
 import type { ResultText } from './operation.ts'
@@ -16,14 +16,14 @@ export interface Keys {
   extra?: Extra
 }
 
-/** A message without keys of its own. */
+/** A message with no declared keys. */
 export const keys: Struct<Keys> = { is: 'struct', name: 'Keys', fields: {} }
 
-/** The keys of an object as its text. */
+/** Returns the keys of an object as JSON text. */
 export const textOf = ({ extra = [] }: Keys): string =>
   `{${extra.map(({ key, json }) => `${JSON.stringify(key)}:${json}`).join(',')}}`
 
-/** The keys of an object that is given as its text. Throws a `BodyError`. */
+/** Returns the keys of an object from its JSON text. Throws a `BodyError`. */
 export function keysOf(json: unknown, allowed: Allowance): Keys {
   if (typeof json !== 'string') throw new BodyError('wrong_type', 'JSON text')
   return readMessage(keys, bytesOf(json), allowed)
@@ -31,11 +31,11 @@ export function keysOf(json: unknown, allowed: Allowance): Keys {
 
 type Envelope = Record<string, unknown>
 
-/** A message that has arrived, with what its envelope says. */
+/** A received message, with facts from its envelope. */
 export interface Received<M> {
-  /** Its own keys. */
+  /** The message. */
   readonly message: M
-  /** When it was made, in milliseconds since 1970, if it says so. */
+  /** Time the message was made, in milliseconds since 1970; `null` if it carries no time. */
   readonly time: number | null
 }
 
@@ -62,7 +62,7 @@ export class Bodies {
   private readonly resultCode: (value: number) => number | bigint
   private readonly allowance: Allowance
 
-  /** Bodies within limits. */
+  /** Creates the reader and writer, with limits. */
   constructor(wire: Wire, clock: Clock, limits: Limits) {
     const { request, response } = wire.envelope
     this.wire = wire
@@ -75,24 +75,24 @@ export class Bodies {
     this.allowance = { depth: limits.jsonDepth, values: limits.jsonValues }
   }
 
-  /** Whether responses carry a result. If not, what did not go well is not answered. */
+  /** `true` if responses carry a result code. Without one, errors get no response. */
   get hasResult(): boolean {
     return this.wire.envelope.response.code !== undefined
   }
 
-  /** What reading one body may cost. */
+  /** Limits on reading one body. */
   get allowed(): Allowance {
     return this.allowance
   }
 
-  /** A request or a report. Throws a `BodyError`. */
+  /** Writes a request or a report. Throws a `BodyError`. */
   writeRequest<M>(struct: Struct<M>, message: M): Uint8Array {
     const { time } = this.wire.envelope.request
     const envelope = time === undefined ? {} : { [time]: this.requestTime(this.clock.wallTime()) }
     return bytesOf(writeEnveloped(this.request, envelope, struct, message))
   }
 
-  /** An answer with this result. Throws a `BodyError`. */
+  /** Writes a response with this result. Throws a `BodyError`. */
   writeResponse<M>({ code, text }: ResultText, struct: Struct<M>, message: M): Uint8Array {
     const of = this.wire.envelope.response
     const envelope: Envelope = {}
@@ -108,14 +108,14 @@ export class Bodies {
     return { message, time: timeOf(this.wire.envelope.request, envelope) }
   }
 
-  /** Reads a response, or what it refuses. Throws a `BodyError`. */
+  /** Reads a response or a refusal. Throws a `BodyError`. */
   readResponse<M>(struct: Struct<M>, data: Uint8Array): Received<M> | Refusal {
     let read: { envelope: Envelope; message: M }
     try {
       read = readEnveloped(this.response, struct, data, this.allowance)
     } catch (problem) {
       if (!(problem instanceof BodyError)) throw problem
-      // A refusal is one, whatever stands beside it.
+      // A refusal counts as one even if its other keys are invalid.
       const refusal = this.refusalOf(readEnvelope(this.response, data, this.allowance))
       if (refusal) return refusal
       throw problem
@@ -131,7 +131,7 @@ export class Bodies {
   private refusalOf(envelope: Envelope): Refusal | null {
     const { code, text } = this.wire.envelope.response
     const result = code === undefined ? undefined : envelope[code]
-    // Without a result, all went well.
+    // A response without a result code is a success.
     if (result === undefined) return null
     const found = Number(result)
     if (found === this.wire.results.success.code) return null
@@ -140,12 +140,15 @@ export class Bodies {
   }
 }
 
-/** Where ids begin: the local time of day as the decimal digits `HHmmssSSS`, so that who restarts does not use ids again. */
+/**
+ * Returns the first message id: the local time of day as the decimal digits `HHmmssSSS`. A program that restarts then
+ * does not reuse ids.
+ */
 export function firstIdAt(wallTime: number): number {
   const time = new Date(wallTime)
   const seconds = (time.getHours() * 100 + time.getMinutes()) * 100 + time.getSeconds()
   return seconds * 1000 + time.getMilliseconds()
 }
 
-/** A result with why. */
+/** Returns a refusal: a result with a reason. */
 export const because = ({ code, text }: ResultText, why: string): Refusal => new Refusal(code, `${text}: ${why}`)

@@ -1,4 +1,4 @@
-// Bodies of any frame, read by the schemas of the typed messages. All that breaks the spec is found, not only the first.
+// Reads bodies of any frame with the schemas of the typed messages. Finds all errors, not only the first.
 
 import { keys } from './bodies.ts'
 import type { ErrorName } from './errors.ts'
@@ -43,7 +43,7 @@ type Keys = Readonly<Record<string, unknown>>
 
 /** Reads a body. `operation` may be `null` for a code that the spec does not know: then only the envelope is checked. */
 export function readBody(protocol: Protocol, operation: Operation | null, side: Side, data: Uint8Array): BodyReport {
-  // The frame of a stream carries its own keys alone.
+  // A stream's frame has no envelope.
   const envelope: ResponseEnvelopeOf = operation?.kind === 'stream' ? { struct: keys } : protocol.envelope[side]
   const message = operation?.[side] ?? keys
   const findings = new Findings()
@@ -60,7 +60,7 @@ export function readBody(protocol: Protocol, operation: Operation | null, side: 
   }
   const isOfEnvelope = faultsOf(envelope.struct)
   const success = protocol.results.find(({ role }) => role === 'success')?.code
-  // A refusal carries the envelope and nothing else.
+  // A refusal has only the envelope.
   const isRefusal = result !== undefined && Number(result) !== success
   const others = isRefusal ? [] : findings.faults.filter((fault) => !isOfEnvelope(fault))
   const faults = [...findings.faults.filter(isOfEnvelope), ...others]

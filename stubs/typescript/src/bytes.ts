@@ -10,12 +10,12 @@ export function hexByte(byte: number): string {
   return byte.toString(16).padStart(2, '0').toUpperCase()
 }
 
-/** `0x` and at least so many upper-case hex digits. */
+/** Returns `0x` and at least `digits` upper-case hex digits. */
 export function hexNumber(value: number, digits: number): string {
   return `0x${value.toString(16).toUpperCase().padStart(digits, '0')}`
 }
 
-/** The unsigned integer in these bytes. */
+/** Returns the unsigned integer in these bytes. */
 export function readUint(bytes: Uint8Array, byteOrder: 'big' | 'little'): number {
   const ordered = byteOrder === 'big' ? bytes : Uint8Array.from(bytes).reverse()
   return ordered.reduce((value, byte) => value * 256 + byte, 0)

@@ -4,7 +4,7 @@ import { BodyError } from './fault.ts'
 
 const utf8 = new TextDecoder('utf-8', { fatal: true, ignoreBOM: true })
 
-/** What UTF-8 stands for, from a place up to another. Throws a `BodyError`. */
+/** Decodes UTF-8 from index `from` up to `to`, exclusive. Throws a `BodyError`. */
 export function decoded(bytes: Uint8Array, from: number = 0, to: number = bytes.length): string {
   if (to - from <= SHORT) {
     const text = shortText(bytes, from, to)
@@ -17,10 +17,10 @@ export function decoded(bytes: Uint8Array, from: number = 0, to: number = bytes.
   }
 }
 
-/** So few bytes are decoded here in a third of the time that it takes to begin with a decoder. */
+/** Up to this many bytes are decoded here, in a third of the time that starting a decoder takes. */
 const SHORT = 32
 
-/** A text of characters of up to three bytes; `null` for everything else, be it UTF-8 or not. */
+/** Decodes characters of up to three bytes. Returns `null` for all other bytes, valid UTF-8 or not. */
 function shortText(bytes: Uint8Array, from: number, to: number): string | null {
   const units: number[] = []
   let at = from
@@ -30,7 +30,7 @@ function shortText(bytes: Uint8Array, from: number, to: number): string | null {
       units.push(lead)
       continue
     }
-    // Two bytes where the first has 110, three where it has 1110: the others have 10 in front.
+    // A first byte 110xxxxx starts two bytes, 1110xxxx three; the following ones are 10xxxxxx.
     const more = lead >= 0xc2 && lead < 0xe0 ? 1 : lead >= 0xe0 && lead < 0xf0 ? 2 : 0
     if (more === 0 || at + more > to) return null
     let code = more === 1 ? lead & 0x1f : lead & 0x0f
@@ -39,17 +39,20 @@ function shortText(bytes: Uint8Array, from: number, to: number): string | null {
       if (next >> 6 !== 0b10) return null
       code = (code << 6) | (next & 0x3f)
     }
-    // Longer than it need be, or half of a surrogate pair.
+    // An overlong form, or half of a surrogate pair.
     if (more === 2 && (code < 0x800 || (code >= 0xd800 && code < 0xe000))) return null
     units.push(code)
   }
   return String.fromCharCode(...units)
 }
 
-/** A text with as many characters as there are bytes. What is ASCII is what it stands for; the rest is anything else. */
+/**
+ * Returns a string with one character per byte. ASCII bytes map to themselves; the characters for other bytes are
+ * unspecified.
+ */
 export const oneForEach: (bytes: Uint8Array) => string = typeof Buffer === 'function' ? copied : single()
 
-/** Node.js copies bytes as they are, while its decoder looks at each. */
+/** Node.js copies the bytes unchanged, while its decoder checks each one. */
 function copied(bytes: Uint8Array): string {
   return (Buffer.isBuffer(bytes) ? bytes : Buffer.from(bytes.buffer, bytes.byteOffset, bytes.length)).toString('latin1')
 }
@@ -59,7 +62,7 @@ function single(): (bytes: Uint8Array) => string {
   return (bytes) => decoder.decode(bytes)
 }
 
-/** Whether all of a text is ASCII. */
+/** Returns `true` if the text is all ASCII. */
 export function isAscii(text: string): boolean {
   return !/[^\0-\x7f]/.test(text)
 }

@@ -3,7 +3,7 @@
 import { BodyError } from './fault.ts'
 import type { FieldPlan, Value } from './plan.ts'
 
-/** The demands of a field on its values, in addition to their type. */
+/** Constraints of a field on its values, in addition to the type. */
 export interface Constraints {
   /** Least value. */
   readonly min?: number | bigint
@@ -22,7 +22,7 @@ export function isConstrained({ min, max, length, pattern, only }: Constraints):
   return [min, max, length, pattern, only].some((one) => one !== undefined)
 }
 
-/** Characters of a text, of which some are two units of UTF-16. */
+/** Returns the number of characters (code points) in a text. Some of them take two UTF-16 units. */
 export function characters(text: string): number {
   let count = text.length
   for (let at = 0; at + 1 < text.length; at++) {
@@ -35,7 +35,9 @@ export function characters(text: string): number {
   return count
 }
 
-/** Whether a text matches. One that is too long for the stack of regular expressions does not. */
+/**
+ * Returns `true` if the text matches. A text too long for the stack of the regular expression engine does not match.
+ */
 export function matches(pattern: RegExp, text: string): boolean {
   try {
     return pattern.test(text)
@@ -73,7 +75,7 @@ export function broken(field: FieldPlan, value: Value): BodyError | null {
 
 const compares = (value: Value): value is number | bigint => typeof value === 'number' || typeof value === 'bigint'
 
-/** Whether it holds for a value, or for each item of a list. */
+/** Returns `true` if `holds` accepts the value, or each item of a list. */
 function each(value: Value, holds: (one: Value) => boolean): boolean {
   return Array.isArray(value) ? value.every((item: Value) => each(item, holds)) : holds(value)
 }

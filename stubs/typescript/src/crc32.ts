@@ -1,4 +1,4 @@
-// CRC-32, as gzip and some headers have it.
+// CRC-32, as used by gzip and some headers.
 
 const TABLE = Uint32Array.from({ length: 256 }, (_, index) => {
   let value = index

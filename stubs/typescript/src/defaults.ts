@@ -1,12 +1,12 @@
-// What a receiver takes for fields that are absent.
+// Values that a receiver takes for absent fields.
 
-/** What the absence of these fields of a message means. */
+/** The default values of these fields of a message. */
 export type DefaultsOf<Message, Name extends keyof Message> = {
-  /** That of each. */
+  /** Default of each field. */
   readonly [Key in Name]: Exclude<Message[Key], undefined>
 }
 
-/** A message with what the absence of its fields means in their place; the message itself stays as it is. */
+/** Returns a copy of the message with defaults in place of absent fields. The message does not change. */
 export function withDefaults<Message extends object, Filled extends object>(
   message: Message,
   defaults: Filled,

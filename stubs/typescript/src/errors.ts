@@ -1,8 +1,8 @@
-// What can be wrong with a frame or a body: the one place that spells the names.
+// Errors of frames and bodies: the one place that spells their names.
 
 import type { Text } from './protocol.ts'
 
-/** What is wrong with a frame or a body. The golden frames and every implementation of the protocol use these names. */
+/** The error found in a frame or a body. The golden frames and every implementation of the protocol use these names. */
 export type ErrorName =
   | 'bad_head'
   | 'short_frame'
@@ -30,7 +30,7 @@ export type ErrorName =
   | 'too_deep'
   | 'bad_base64'
 
-/** What each name means, for a reader. */
+/** A description of each error for a reader. */
 export const errorText: Readonly<Record<ErrorName, Text>> = {
   bad_head: { zh: '帧头不对：这不是一帧的开头', en: 'Wrong head: no frame starts here' },
   short_frame: { zh: '总长度小于包头长度', en: 'The total length is shorter than the header' },

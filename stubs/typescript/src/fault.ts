@@ -1,11 +1,11 @@
-// What is wrong with a body, as an error.
+// The error of a body, as an exception.
 
 import type { ErrorName } from './errors.ts'
 
-/** The names of limits that only an implementation with such a limit has. */
+/** Errors of limits that not every implementation has. */
 export type OwnLimit = 'too_many_values' | 'inflates_too_much'
 
-/** What can be wrong with a body. */
+/** Errors that a body can have. */
 export type BodyErrorKind =
   | Extract<
       ErrorName,
@@ -26,25 +26,25 @@ export type BodyErrorKind =
     >
   | 'too_many_values'
 
-/** A key, or the place of an item. */
+/** A key, or the index of an item. */
 type Step = string | number
 
-/** A path from one step further out. */
+/** Prefixes a path with one more step. */
 function below(step: Step, path: string): string {
   const own = typeof step === 'number' ? `[${step}]` : step
   return path === '' || path.startsWith('[') ? own + path : `${own}.${path}`
 }
 
-/** A body that is none of its type. It quotes no value: what peers send stays out of logs. */
+/** The error of an invalid body. It quotes no value: data from peers stays out of logs. */
 export class BodyError extends Error {
   /** The fixed name. */
   readonly kind: BodyErrorKind
-  /** What is expected. */
+  /** The value or form that was expected. */
   readonly expected: string
   /** Wire keys down to the place, such as `data.stations[3].x`; empty for the body itself. */
   path: string
 
-  /** `expected` says what is expected in place of what is there. */
+  /** Creates the error. `expected` describes the value that belongs there. */
   constructor(kind: BodyErrorKind, expected: string, path: string = '') {
     super(kind)
     this.kind = kind
@@ -54,7 +54,7 @@ export class BodyError extends Error {
     this.message = this.say()
   }
 
-  /** Notes that it is inside this key or item. */
+  /** Prefixes the path with this key or index. */
   inside(step: Step): this {
     this.path = below(step, this.path)
     this.message = this.say()
@@ -66,7 +66,7 @@ export class BodyError extends Error {
   }
 }
 
-/** The findings of a reader that goes on behind errors, in its order. */
+/** The errors and unknown places that a reader found, in its order. The reader continues after errors. */
 export class Findings {
   /** All errors. */
   readonly faults: BodyError[] = []
@@ -74,22 +74,22 @@ export class Findings {
   readonly unknown: string[] = []
   private readonly steps: Step[] = []
 
-  /** Goes to the value of a key or an item. */
+  /** Enters the value of a key or an item. */
   enter(step: Step): void {
     this.steps.push(step)
   }
 
-  /** Goes back behind it. */
+  /** Leaves it. */
   leave(): void {
     this.steps.pop()
   }
 
-  /** Notes an error, whose path begins here. */
+  /** Adds an error, with a path relative to this place. */
   fault(problem: BodyError): void {
     this.faults.push(this.steps.reduceRight<BodyError>((fault, step) => fault.inside(step), problem))
   }
 
-  /** Notes an unknown key here, or the value at hand. */
+  /** Adds an unknown key, or the present value. */
   unknownAt(path: string): void {
     this.unknown.push(this.steps.reduceRight<string>((inner, step) => below(step, inner), path))
   }

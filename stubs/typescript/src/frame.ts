@@ -1,5 +1,5 @@
-// Frames: bytes to named fields and back. The layout comes from the generated protocol. `Framing` checks and seals
-// frames for connections as well as here, where each check is listed with what it compared.
+// Decodes and encodes frames as named fields. The layout comes from the generated protocol. `Framing` checks and seals
+// frames, as it does for connections. Here each check is listed with the values that it compared.
 
 import type { Codec } from './algorithms.ts'
 import { readUint, writeUint } from './bytes.ts'
@@ -9,56 +9,56 @@ import { Framing, hexOf } from './framing.ts'
 import type { WholeFrame } from './framing.ts'
 import type { HeaderField, HeaderRole, Protocol, Side } from './protocol.ts'
 
-/** A header field of a frame at hand. */
+/** A header field with its value. */
 export interface FieldValue {
-  /** Which one. */
+  /** The field. */
   field: HeaderField
-  /** Its bytes, as many as are there. */
+  /** Its bytes, as far as present. */
   bytes: Uint8Array
-  /** The number, for `uint` fields whose bytes are all there. */
+  /** The number, for complete `uint` fields. */
   value: number | null
 }
 
-/** Something checked, and how it came out. */
+/** A check with its result. */
 export interface Verdict {
-  /** What was checked. */
+  /** The part that was checked. */
   what: 'head' | 'length' | 'kind' | 'encoding' | 'digest' | 'inflate'
-  /** What is wrong with it. */
+  /** The error found; `null` for none. */
   fault: ErrorName | null
-  /** What was expected, where a number or bytes say it. */
+  /** The expected number or bytes; `null` where neither applies. */
   expected: string | null
-  /** What was found there. */
+  /** The number or bytes found. */
   found: string | null
 }
 
-/** A frame, or as much of it as there is. */
+/** A decoded frame, complete or not. */
 export interface Decoded {
-  /** All that there was to look at. */
+  /** The bytes to decode. */
   bytes: Uint8Array
   /** The header. */
   fields: FieldValue[]
   /** The data as sent. */
   data: Uint8Array
-  /** The data after decompression; `null` if that failed or never began. */
+  /** The data after decompression; `null` if decompression failed or did not start. */
   plain: Uint8Array | null
-  /** Bytes behind this frame. */
+  /** Bytes after this frame. */
   rest: Uint8Array
-  /** All that was checked, in order. */
+  /** The checks, in order. */
   verdicts: Verdict[]
-  /** The first fault. */
+  /** The first error; `null` for none. */
   fault: ErrorName | null
 }
 
 const same = (a: ArrayLike<number>, b: ArrayLike<number>) =>
   a.length === b.length && Array.prototype.every.call(a, (byte, index) => byte === b[index])
 
-/** Frames of any ratio of compression, as the golden frames have them. */
+/** Returns a framing that accepts any compression ratio, as the golden frames need it. */
 function framingOf({ protocol, algorithms }: Codec): Framing {
   const { frameBytes, inflatedBytes } = protocol.limits
   return new Framing(protocol, { frameBytes, inflatedBytes }, algorithms)
 }
 
-/** Takes the frame apart that begins with the first byte, as far as it goes. The order of the checks is the protocol's. */
+/** Decodes the frame at the start of `bytes`, as far as possible. The order of the checks is the protocol's. */
 export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
   const { protocol } = codec
   const framing = framingOf(codec)
@@ -76,7 +76,7 @@ export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
     verdicts: [],
     fault: null,
   }
-  /** Notes a check, unless one has failed before. */
+  /** Adds a check, unless one has failed before. */
   const check = (what: Verdict['what'], fault: ErrorName | null, [expected, found]: Compared = [null, null]) => {
     if (decoded.fault !== null) return
     decoded.verdicts.push({ what, fault, expected, found })
@@ -97,7 +97,7 @@ export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
   if (decoded.fault !== null) return decoded
   decoded.rest = bytes.subarray(begins)
 
-  // The algorithms of a codec answer at once, and so does the framing.
+  // A codec's algorithms are synchronous, so the framing is as well.
   const { data, fault } = framing.open(bytes.subarray(0, begins)) as WholeFrame
   decoded.plain = data
   const among = (...names: ErrorName[]): ErrorName | null => names.find((name) => name === fault) ?? null
@@ -111,7 +111,7 @@ export function decodeFrame(codec: Codec, bytes: Uint8Array): Decoded {
 
 type Compared = readonly [expected: string | null, found: string | null]
 
-/** The digest of the data, and the one that was sent. */
+/** Returns the digest of the data and the digest sent. */
 function digests({ protocol, algorithms }: Codec, sent: FieldValue, data: Uint8Array): Compared {
   if (sent.field.algorithm !== 'crc32') return [hexOf(algorithms.md5(data)), hexOf(sent.bytes)]
   const expected = new Uint8Array(4)
@@ -119,7 +119,7 @@ function digests({ protocol, algorithms }: Codec, sent: FieldValue, data: Uint8A
   return [hexOf(expected), hexOf(sent.bytes)]
 }
 
-/** The length of the data before compression, and the length in the header. */
+/** Returns the length of the data before compression and the length in the header. */
 function lengths({ protocol, algorithms }: Codec, decoded: Decoded, fault: WholeFrame['fault']): Compared {
   const { inflatedBytes } = protocol.limits
   const found = String(headerValue(decoded, 'plain_length') ?? decoded.data.length)
@@ -135,21 +135,21 @@ function lengths({ protocol, algorithms }: Codec, decoded: Decoded, fault: Whole
 const fieldIn = (decoded: Decoded, role: HeaderRole): FieldValue | undefined =>
   decoded.fields.find(({ field }) => field.role === role)
 
-/** The number in the header field with a role; `null` where its bytes are not all there. */
+/** Returns the number in the header field with a role; `null` if it is incomplete. */
 export function headerValue(decoded: Decoded, role: HeaderRole): number | null {
   return fieldIn(decoded, role)?.value ?? null
 }
 
-/** Which message the head opens; `null` if it is not a whole head. */
+/** Returns the message that the head belongs to; `null` if the head is incomplete. */
 export function sideOf(protocol: Protocol, decoded: Decoded): Side | null {
   const bytes = fieldIn(decoded, 'head')?.bytes
   const opens = (head: readonly number[]) => bytes !== undefined && same(head, bytes)
   return opens(protocol.requestHead) ? 'request' : opens(protocol.responseHead) ? 'response' : null
 }
 
-/** What a frame to be made says of itself. */
+/** The parts of a frame to encode. */
 export interface FrameParts {
-  /** Whether it answers another one. */
+  /** `true` for a response or an acknowledgement. */
   response: boolean
   /** Value of its kind. */
   kind: number
@@ -157,13 +157,13 @@ export interface FrameParts {
   code: number
   /** Message id. */
   id: number
-  /** Whether its data is to be compressed; it is not where the protocol has no encoding for that. */
+  /** Compresses the data. Ignored where the protocol has no gzip encoding. */
   gzip: boolean
   /** The data, not compressed. */
   data: Uint8Array
 }
 
-/** Makes the frame. */
+/** Encodes a frame. */
 export function encodeFrame(codec: Codec, { gzip, data, ...id }: FrameParts): Uint8Array {
   const framing = framingOf(codec)
   return gzip && framing.gzip !== null

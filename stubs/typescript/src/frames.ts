@@ -1,55 +1,59 @@
-// A stream of bytes as frames, however it is split on its way.
+// Splits a stream of bytes into frames, for any split of the bytes.
 
 import type { ErrorName } from './errors.ts'
 import type { Framing, WholeFrame } from './framing.ts'
 import type { Soon } from './platform.ts'
 
-/** What comes out of a stream: a frame, or why there will be none any more. */
+/** One item of a stream: a frame, or the error that ends it. */
 export type FromStream = WholeFrame | FatalFault
 
-/** The place of the next frame is lost: the connection has to be closed. */
+/** An error after which the next frame cannot be found: the connection must be closed. */
 export interface FatalFault {
-  /** What is wrong. */
+  /** The error. */
   readonly fatal: ErrorName
 }
 
-/** Gathers what arrives, and gives whole frames. It holds no more than has come, whatever a frame says of its length. */
+/**
+ * Gathers received bytes and returns whole frames. Memory use follows the received bytes, not the length in a header.
+ */
 export class FrameStream {
   private readonly framing: Framing
   private chunks: Uint8Array[] = []
   private held = 0
   private fatal: ErrorName | null = null
-  /** The length of the frame that has begun, as soon as it is known. */
+  /** Length of the frame that has begun; `null` until its header is complete. */
   private total: number | null = null
 
-  /** A stream from which nothing has come. */
+  /** Creates an empty stream. */
   constructor(framing: Framing) {
     this.framing = framing
   }
 
-  /** Bytes of a frame that has begun; 0 between two frames. */
+  /** Number of bytes of the frame that has begun; 0 between two frames. */
   get pending(): number {
     return this.held
   }
 
-  /** How long the frame is that has begun, header included; that of a header while it does not say. */
+  /**
+   * Length of the frame that has begun, in bytes and with header. Until the length is known, the length of a header.
+   */
   get expected(): number {
     return this.total ?? this.framing.headerLength
   }
 
-  /** Whether what has come ends inside a header. */
+  /** `true` if the received bytes end inside a header. */
   get isInsideHeader(): boolean {
     return this.held > 0 && this.held < this.framing.headerLength
   }
 
-  /** Adds bytes that have arrived. They must not change afterwards. */
+  /** Adds received bytes. They must not change afterwards. */
   push(bytes: Uint8Array): void {
     if (bytes.length === 0 || this.fatal !== null) return
     this.chunks.push(bytes)
     this.held += bytes.length
   }
 
-  /** The next frame; `null` until more arrives. */
+  /** Returns the next frame; `null` until more bytes arrive. */
   next(): Soon<FromStream> | null {
     if (this.fatal !== null) return { fatal: this.fatal }
     if (this.held === 0) return null
@@ -65,7 +69,7 @@ export class FrameStream {
     return this.framing.open(bytes)
   }
 
-  /** The stream has ended: what is wrong if that was inside a frame. */
+  /** Ends the stream. Returns an error if it ended inside a frame. */
   end(): FatalFault | null {
     if (this.fatal !== null) return { fatal: this.fatal }
     return this.held === 0 ? null : this.lose('truncated')
@@ -78,14 +82,14 @@ export class FrameStream {
     return { fatal }
   }
 
-  /** The first bytes, so many or more if there are, of which none is taken. */
+  /** Returns the first bytes, at least `length` if available, without taking them. */
   private start(length: number): Uint8Array {
     const first = this.chunks[0]
     if (first && first.length >= length) return first
     return joined(this.chunks, Math.min(length, this.held))
   }
 
-  /** Takes the first bytes, of which there are enough. */
+  /** Takes the first `length` bytes. The caller checks that there are enough. */
   private take(length: number): Uint8Array {
     const { chunks } = this
     const first = chunks[0]
@@ -100,7 +104,7 @@ export class FrameStream {
   }
 }
 
-/** The first bytes of several chunks as one. */
+/** Joins the first bytes of several chunks. */
 export function joined(chunks: readonly Uint8Array[], length: number): Uint8Array {
   const all = new Uint8Array(length)
   let at = 0

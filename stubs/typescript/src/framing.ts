@@ -1,4 +1,4 @@
-// Frames of a protocol, for a connection: a header is looked at once, and nothing is kept that nobody asks for.
+// Frames of a protocol, for a connection: each header is read once, and only requested details are kept.
 
 import { hexByte } from './bytes.ts'
 import { crc32 } from './crc32.ts'
@@ -13,39 +13,39 @@ import { integer } from './settings.ts'
 import type { Check } from './settings.ts'
 import type { FrameLayout, WireField } from './wire.ts'
 
-/** Data of so many bytes or fewer may have been compressed by any ratio: a grid in which all is zero is no longer. */
+/** Up to this many plain bytes, any compression ratio is allowed, for example for a grid of zeros. */
 const INFLATE_FREE = 2 ** 20
 
-/** What bounds a frame. */
+/** Limits of a frame. */
 export interface FrameLimits {
   /** Longest frame, header included, in bytes. */
   readonly frameBytes: number
   /** Longest data after decompression, in bytes. */
   readonly inflatedBytes: number
-  /** Most bytes that one byte of compressed JSON may become, where more than 1 MiB come out; absent for any. */
+  /** Most plain bytes per byte of compressed JSON, for more than 1 MiB of plain bytes; absent for no limit. */
   readonly inflateRatio?: number
 }
 
 /** A whole frame. */
 export interface WholeFrame {
-  /** What it is about. */
+  /** Kind, code and id of the frame. */
   readonly id: FrameId
-  /** The digest of a report as sent, in hex; `null` where the header has none, and for other frames. */
+  /** The digest of a report in hex, as sent; `null` for other frames and for headers without a digest. */
   readonly digest: string | null
   /** Its data, not compressed; `null` if it cannot be read. */
   readonly data: Uint8Array | null
-  /** Bytes of its data as they were sent. */
+  /** Bytes of its data as sent. */
   readonly sent: number
-  /** What is wrong with it; the frame behind it can still be read. */
+  /** The error in the frame; `null` for none. The next frame can still be read. */
   readonly fault: ErrorName | OwnLimit | null
 }
 
-/** How long the frame is that begins here, header included; a fault behind which nobody knows where the next one begins. */
+/** Length of the frame that begins here, header included; or an error after which the next frame cannot be found. */
 export type Beginning = number | 'bad_head' | 'short_frame' | 'frame_too_long'
 
-/** Writes and reads frames as a layout says. */
+/** Encodes and decodes frames of a layout. */
 export class Framing {
-  /** Bytes from which on the length of a frame is known. */
+  /** Number of bytes after which the frame's length is known. */
   readonly headEnd: number
   /** Bytes of the header. */
   readonly headerLength: number
@@ -68,7 +68,7 @@ export class Framing {
   private readonly reports: number
   private readonly roles: ReadonlyMap<number, string>
 
-  /** Frames of a layout, within limits. */
+  /** Creates a framing with limits. */
   constructor(layout: FrameLayout, limits: FrameLimits, algorithms: PlatformAlgorithms, verifyDigest: boolean = true) {
     this.layout = layout
     this.limits = limits
@@ -97,22 +97,22 @@ export class Framing {
     return field
   }
 
-  /** The kind of frames with this role. */
+  /** Returns the kind of frames with this role. */
   kind(role: 'stream' | 'command' | 'report'): number {
     return this.layout.kinds.find((kind) => kind.role === role)?.value ?? 0
   }
 
-  /** Throws a `TypeError` or `RangeError` for a command code that the header has no room for. */
+  /** Throws a `TypeError` or `RangeError` for a command code that does not fit the header. */
   checkCode(code: number): void {
     this.code('code', code)
   }
 
-  /** The same for a message id. */
+  /** Throws a `TypeError` or `RangeError` for a message id that does not fit the header. */
   checkId(id: number): void {
     this.id('id', id)
   }
 
-  /** Makes a frame. `from`: data of so many bytes or more is compressed, if the protocol can and it gets shorter. */
+  /** Encodes a frame. Compresses data of at least `from` bytes, if the protocol can and the result is shorter. */
   encode(id: FrameId, data: Uint8Array, from: number | null): Soon<Uint8Array> {
     if (from === null || this.gzip === null || data.length < from) return this.seal(id, data, data.length, this.plain)
     const { gzip } = this
@@ -122,16 +122,16 @@ export class Framing {
         ? this.seal(id, member, data.length, gzip)
         : this.seal(id, data, data.length, this.plain)
     if (!(packed instanceof Promise)) return sealed(packed)
-    // A platform that fails to compress does not prevent sending.
+    // If the platform fails to compress, the data is sent uncompressed.
     return packed.then(sealed, () => this.seal(id, data, data.length, this.plain))
   }
 
-  /** Whether data fits into a frame. */
+  /** Returns `true` if the data fits into a frame. */
   fits(data: Uint8Array): boolean {
     return this.headerLength + data.length <= this.frameBytes
   }
 
-  /** Makes a frame of data in its encoding. */
+  /** Makes a frame from data that is already in its encoding. */
   seal(id: FrameId, sent: Uint8Array, plainLength: number, encoding: number): Uint8Array {
     const { layout, fields } = this
     const frame = room(this.headerLength + sent.length)
@@ -180,7 +180,7 @@ export class Framing {
     return true
   }
 
-  /** Looks at the first bytes of a frame; `null` while its length has not come. */
+  /** Reads the length from the first bytes of a frame; `null` until the length is complete. */
   begins(bytes: Uint8Array): Beginning | null {
     const { requestHead, responseHead } = this.layout
     if (!this.opens(bytes, requestHead) && !this.opens(bytes, responseHead)) return 'bad_head'
@@ -190,7 +190,7 @@ export class Framing {
     return total > this.frameBytes ? 'frame_too_long' : total
   }
 
-  /** Takes a whole frame apart, with all checks in the order of the protocol. */
+  /** Decodes a whole frame, with all checks in the order of the protocol. */
   open(bytes: Uint8Array): Soon<WholeFrame> {
     const { fields, layout } = this
     const id: FrameId = {
@@ -200,7 +200,7 @@ export class Framing {
       id: this.read(bytes, fields.id),
     }
     const data = bytes.subarray(this.headerLength)
-    // Only reports are told apart by theirs.
+    // Only reports need their digest later.
     const digest =
       fields.digest && id.kind === this.reports
         ? hexOf(bytes.subarray(fields.digest.offset, fields.digest.offset + fields.digest.size))
@@ -227,7 +227,7 @@ export class Framing {
         : Math.max(INFLATE_FREE, data.length * inflateRatio)
     if (plainLength > most) return bad('inflates_too_much')
     const judge = (plain: Uint8Array | ErrorName): WholeFrame => {
-      // More than is announced, whatever follows.
+      // The limit is the header's plain length, so the data is longer than that.
       if (plain === 'inflated_too_long') return bad('plain_length_mismatch')
       if (typeof plain === 'string') return bad(plain)
       if (!hasTrailer(data, plain)) return bad('bad_gzip')
@@ -249,12 +249,12 @@ export class Framing {
   }
 }
 
-/** Checks the value of a field of the header. */
+/** Returns the check for the value of a header field. */
 const roomOf = ({ size }: WireField): Check => integer(0, Math.min(2 ** (8 * size) - 1, Number.MAX_SAFE_INTEGER))
 
 const HEX = Array.from({ length: 256 }, (_, byte) => hexByte(byte).toLowerCase())
 
-/** Bytes in hex. */
+/** Returns bytes in hex. */
 export function hexOf(bytes: Uint8Array): string {
   let text = ''
   for (const byte of bytes) text += HEX[byte] ?? ''

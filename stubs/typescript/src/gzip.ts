@@ -2,7 +2,7 @@
 
 import { crc32 } from './crc32.ts'
 
-/** Gzip with deflate. */
+/** The magic number, and the method: deflate. */
 const MAGIC = [0x1f, 0x8b, 8]
 const HEADER = 10
 const TRAILER = 8
@@ -15,8 +15,8 @@ const CHECKSUM = 0b0000_0010
 const RESERVED = 0b1110_0000
 
 /**
- * Returns the deflated data of a member, which has to end with its last byte, or `null` for other data. A second member and zeros
- * behind the first one are part of the data, and inflating it fails.
+ * Returns the deflated data of a member; `null` for other data. The member must end with the last byte. A second member
+ * or zeros after the first one count as data, and inflating them fails.
  */
 export function deflatedOf(member: Uint8Array): Uint8Array | null {
   const flags = member[3] ?? RESERVED

@@ -1,17 +1,19 @@
 // Texts and numbers of JSON: `JSON.parse` rounds the 64-bit ids of this protocol.
 
-/** What newer platforms have of their own. */
+/** A method that only newer platforms have. */
 const { isWellFormed } = String.prototype as { isWellFormed?: (this: string) => boolean }
 
-/** Whether it has half of a surrogate pair without the other. */
+/** Returns `true` if the text has one half of a surrogate pair without the other. */
 export const hasLoneSurrogate = (text: string): boolean =>
   isWellFormed ? !isWellFormed.call(text) : /\p{Surrogate}/u.test(text)
 
-/** Digits that no integer type of the spec has, by far. */
+/** Far more digits than any integer type needs. */
 const MANY_DIGITS = 40
 
-/** The integer that a JSON number amounts to, exactly: `1.0` and `1e2` are integers. `null` for a fraction, and for what is
- * not a number. What is far beyond any type comes out as some number that is, too. */
+/**
+ * Returns the exact integer value of a JSON number: `1.0` and `1e2` are integers. Returns `null` for a fraction or text
+ * that is not a number. A number far outside every type yields another number that is also outside.
+ */
 export function integral(number: string): bigint | null {
   const found = /^(-?)(\d+)(?:\.(\d+))?(?:[eE]([+-]?\d+))?$/.exec(number)
   if (!found) return null
@@ -19,7 +21,7 @@ export function integral(number: string): bigint | null {
   const all = (whole + part).replace(/^0+/, '')
   if (all === '') return 0n
   let end = all.length
-  // No regular expression: from each zero on it would look for the end again.
+  // A regular expression would look for the end again from each zero.
   while (all[end - 1] === '0') end--
   const digits = all.slice(0, end)
   const power = Number(exponent) - part.length + all.length - end

@@ -2,16 +2,16 @@
 
 import { callUser } from './thrown.ts'
 
-/** How much it matters. */
+/** Severity of a message. */
 export type LogLevel = 'debug' | 'info' | 'warn' | 'error'
 
-/** What goes with a message: names and numbers, never what a body says. */
+/** Names and numbers logged with a message, never the content of a body. */
 export type LogFields = Readonly<Record<string, string | number | boolean | null>>
 
-/** Is told what happens. */
+/** Receives log messages. */
 export type Log = (level: LogLevel, message: string, fields: LogFields) => void
 
-/** Writes errors to the console, and nothing else: they are faults of the program. */
+/** Writes only errors to the console: they are bugs of the program. */
 const errorsOnly: Log = (level, message, fields) => {
   if (level === 'error') console.error(message, fields)
 }
@@ -26,7 +26,7 @@ class Thin {
   private lines = 0
   private held = 0
 
-  /** Whether to write a line now: how many were held back before it; `null` if this one is. */
+  /** Returns the number of lines held back before this one; `null` if this one is held back too. */
   line(now: number): number | null {
     if (now - this.since >= WINDOW) {
       this.since = now
@@ -43,14 +43,14 @@ class Thin {
   }
 }
 
-/** Writes lines to a log. A log that throws, or rejects, harms nothing. */
+/** Writes to a log. If the log throws or rejects, the error is ignored. */
 export class Logger {
   private readonly log: Log
   private readonly protocol: string
   private readonly now: () => number
   private readonly causes = new Map<string, Thin>()
 
-  /** Writes to this log, or errors to the console. `now` returns milliseconds that never go back. */
+  /** Writes to this log, or errors to the console. `now` returns monotonic milliseconds. */
   constructor(log: Log | undefined, protocol: string, now: () => number) {
     this.log = log ?? errorsOnly
     this.protocol = protocol

@@ -1,8 +1,8 @@
-// What belongs to what in a protocol.
+// Looks up parts of a protocol that belong together.
 
 import type { HeaderField, HeaderRole, Kind, Operation, Protocol } from './protocol.ts'
 
-/** The header field with a role. Throws for a protocol that has none, which no spec without faults makes. */
+/** Returns the header field with a role. Throws if there is none; a checked spec has each. */
 export function fieldOf(protocol: Protocol, role: HeaderRole): HeaderField {
   const field = protocol.header.find((candidate) => candidate.role === role)
   if (!field) throw new Error(`the protocol has no header field with role ${role}`)
@@ -10,8 +10,8 @@ export function fieldOf(protocol: Protocol, role: HeaderRole): HeaderField {
 }
 
 /**
- * The operation that a code belongs to. A stream may have the code of the command that starts it; which of the two is
- * meant, the kind of the frame says. Without one it is the command.
+ * Returns the operation with a code. A stream may share the code of the command that starts it; the frame's kind
+ * distinguishes the two. Without a kind it is the command.
  */
 export function operationOf(protocol: Protocol, code: number | null, kind: Kind | null = null): Operation | null {
   const all = protocol.operations.filter((operation) => operation.code !== null && operation.code === code)
@@ -19,7 +19,7 @@ export function operationOf(protocol: Protocol, code: number | null, kind: Kind 
   return all.find((operation) => (operation.kind === 'stream') === isStream) ?? all[0] ?? null
 }
 
-/** The kind of frame that carries an operation. */
+/** Returns the kind of frame for an operation. */
 export function kindOf(protocol: Protocol, operation: Operation | null): Kind | null {
   return protocol.kinds.find(({ role }) => role === operation?.kind) ?? null
 }

@@ -1,33 +1,33 @@
-// Why there is no connection.
+// Reasons for having no connection.
 
 import type { ErrorName } from './errors.ts'
 
-/** Why a connection was lost, or why there is none. */
+/** The reason why a connection was lost, or why there is none. */
 export type Loss =
-  /** There has been no connection yet, and the first attempt to make one is not over. */
+  /** There has been no connection yet; the first attempt is still running. */
   | { readonly is: 'not_yet' }
-  /** The robot has closed the connection after it had sent something. */
+  /** The robot closed the connection after it had sent a frame. */
   | { readonly is: 'closed_by_robot' }
-  /** The robot has closed the connection, and not one frame had come over it. */
+  /** The robot closed the connection without sending a frame. */
   | { readonly is: 'closed_unheard' }
-  /** The connection broke, for a reason of the platform. */
+  /** The connection broke, with the platform's reason. */
   | { readonly is: 'broken'; readonly reason: string }
-  /** What the robot sent cannot be told into frames. */
+  /** The received bytes cannot be split into frames. */
   | { readonly is: 'frame'; readonly fault: ErrorName }
-  /** A frame began and did not go on, or came slower than it may: so many of its bytes have come. */
+  /** A frame stopped or was too slow after `received` of its `total` bytes. */
   | { readonly is: 'stalled'; readonly received: number; readonly total: number }
-  /** The robot did not read what was sent to it within the stall timeout. */
+  /** The robot did not read the sent bytes within the stall timeout. */
   | { readonly is: 'unread' }
-  /** The network says no to a new connection. */
+  /** The network refused a new connection. */
   | { readonly is: 'unreachable'; readonly reason: string }
   /** A new connection was not made within the connect timeout. */
   | { readonly is: 'connect_timeout' }
-  /** The command connection was made again, and the data connection, which belongs to it, is as well. */
+  /** The command connection was made again, so the data connection is made again as well. */
   | { readonly is: 'renewed' }
   /** This side has closed the connection. */
   | { readonly is: 'closed_here' }
 
-/** What it means, for people. */
+/** Returns a description of the loss for people. */
 export function lossText(loss: Loss): string {
   switch (loss.is) {
     case 'not_yet':

@@ -1,4 +1,5 @@
-// MD5 (RFC 1321), for where the platform has none of its own: the protocol's digest, which proves nothing against an attacker.
+// MD5 (RFC 1321), for platforms that lack it. The protocol uses it as a digest. It gives no protection against an
+// attacker.
 
 const SHIFTS = [7, 12, 17, 22, 5, 9, 14, 20, 4, 11, 16, 23, 6, 10, 15, 21]
 const SINES = Int32Array.from({ length: 64 }, (_, index) => Math.floor(Math.abs(Math.sin(index + 1)) * 2 ** 32))

@@ -1,4 +1,4 @@
-// A message of an operation to its frame.
+// Encodes a message of an operation as a frame.
 
 import type { Codec } from './algorithms.ts'
 import { BodyError } from './fault.ts'
@@ -9,17 +9,17 @@ import { judge } from './read.ts'
 import { utf8Of } from './room.ts'
 import { ANY } from './scanner.ts'
 
-/** What a message's frame says beside its body. */
+/** The parts of a message's frame other than its body. */
 export interface MessageParts {
-  /** Which message of the operation. */
+  /** The request or the response. */
   side: Side
   /** Message id. */
   id: number
-  /** Whether the body is compressed. */
+  /** Compresses the body. */
   gzip: boolean
 }
 
-/** The frame of a message; `null` for an operation without a code. Text that is not JSON is sent unchanged. */
+/** Returns the frame of a message; `null` for an operation without a code. Text that is not JSON is sent unchanged. */
 export function messageFrame(
   codec: Codec,
   operation: Operation,
@@ -34,7 +34,7 @@ export function messageFrame(
     code: operation.code,
     id,
     gzip,
-    // Indentation is for people.
+    // Indentation is only for people.
     data: new TextEncoder().encode(compact(json, codec.protocol.limits.jsonDepth)),
   })
 }
@@ -49,7 +49,7 @@ export function compact(text: string, maxDepth: number): string {
     if (!(problem instanceof BodyError)) throw problem
     return text
   }
-  // No regular expression: one for strings with escapes fills the stack where there are millions of these.
+  // A regular expression for strings with escapes overflows the stack if there are millions of them.
   let bare = ''
   let from = 0
   let quoted = false

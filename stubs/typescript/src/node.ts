@@ -9,7 +9,7 @@ import { deflatedOf } from './gzip.ts'
 import { TransportError } from './platform.ts'
 import type { Clock, DialOptions, Listener, ListenOptions, ServerPlatform, Transport } from './platform.ts'
 
-/** As a text with a character for each byte, which Node.js makes in half the time of a buffer. */
+/** The digest as a text with one character per byte. Node.js creates it in half the time of a buffer. */
 function md5AtOnce(data: Uint8Array): Uint8Array {
   const text = crypto.hash('md5', data, 'binary')
   const digest = new Uint8Array(text.length)
@@ -25,9 +25,9 @@ interface Inflated {
   readonly engine: { readonly bytesWritten: number }
 }
 
-/** Those of Node.js itself. */
+/** The algorithms of Node.js. */
 export const nodeAlgorithms: Algorithms = {
-  // In one step where Node.js has that, from 20.12 on.
+  // One step where available, since Node.js 20.12.
   md5: typeof crypto.hash === 'function' ? md5AtOnce : (data) => crypto.createHash('md5').update(data).digest(),
   gzip: (data) => gzipSync(data, { level: 1 }),
   gunzip(member, limit) {
@@ -35,7 +35,7 @@ export const nodeAlgorithms: Algorithms = {
     if (!deflated) return 'bad_gzip'
     try {
       const options = { maxOutputLength: Math.max(1, limit), info: true }
-      // The types do not have what `info` asks for: how many bytes were used.
+      // The types do not declare the result of `info`: the number of bytes used.
       const { buffer, engine } = inflateRawSync(deflated, options) as unknown as Inflated
       return engine.bytesWritten === deflated.length ? buffer : 'bad_gzip'
     } catch (problem) {
@@ -49,7 +49,7 @@ export const nodeClock: Clock = {
   now: () => performance.now(),
   wallTime: () => Date.now(),
   after(milliseconds, then) {
-    // Longer waits than this fire at once.
+    // Node.js fires longer timeouts at once.
     const timer = setTimeout(then, Math.min(milliseconds, 2 ** 31 - 1))
     return () => {
       clearTimeout(timer)
@@ -62,7 +62,7 @@ const reasonOf = (problem: unknown): string => {
   return typeof code === 'string' ? code : 'EIO'
 }
 
-/** A socket, read only when somebody asks. */
+/** A socket that is read only on request. */
 class SocketTransport implements Transport {
   readonly remote: string
   private readonly socket: Socket
@@ -75,7 +75,7 @@ class SocketTransport implements Transport {
     this.socket = socket
     this.remote = socket.remoteAddress ?? ''
     socket.setNoDelay(true)
-    // Node.js drops fractions of a second, and with 0 the system uses its own time.
+    // Node.js drops fractions of a second. With 0 the system uses its default.
     if (keepalive !== null) socket.setKeepAlive(true, Math.max(1000, keepalive))
     socket.on('data', (chunk: Uint8Array) => {
       if (this.reader === null) {
@@ -139,7 +139,7 @@ class SocketTransport implements Transport {
   }
 }
 
-/** What Node.js has: both sides can run on it. */
+/** The platform of Node.js, for app and robot. */
 export const nodePlatform: ServerPlatform = {
   algorithms: nodeAlgorithms,
   clock: nodeClock,
@@ -176,7 +176,7 @@ export const nodePlatform: ServerPlatform = {
       })
       server.listen(port, host, () => {
         server.removeAllListeners('error')
-        // What the system cannot accept for want of files, it will ask for again.
+        // The system retries a connection that it could not accept for lack of file descriptors.
         server.on('error', () => {})
         resolve({ port: (server.address() as AddressInfo).port, close: () => void server.close() })
       })

@@ -1,21 +1,21 @@
-// Commands, reports and streams as values that know their types. A package has one constant for each.
+// Commands, reports and streams as values with types. A package has one constant for each.
 
 import type { Text } from './protocol.ts'
 import type { AnyEnum, AnyStruct, Enum, Struct, Tagged } from './schema.ts'
 import type { AckPolicy } from './session.ts'
 
-/** What a command does to the robot. */
+/** Effect of a command on the robot. */
 export type Effect =
-  /** Only asks. */
+  /** Only reads. */
   | 'read'
-  /** Changes what the robot knows or how it behaves. */
+  /** Changes the robot's settings or behaviour. */
   | 'config'
   /** Sets something in motion. */
   | 'motion'
-  /** Nobody knows: never repeated by itself, like what sets something in motion. */
+  /** Unknown: never repeated automatically, like a command that sets something in motion. */
   | 'unknown'
 
-/** A result code and the text sent beside it. */
+/** A result code and its text. */
 export interface ResultText {
   /** Code. */
   readonly code: number
@@ -31,36 +31,39 @@ export interface States {
   readonly values: readonly (number | bigint | string)[]
 }
 
-/** What has to hold before a command is accepted. */
+/** Conditions under which a command is accepted. */
 export interface Preconditions {
-  /** In which states: `any`, or those in which each of these enums has one of these values. Absent where nothing is said. */
+  /**
+   * The states that accept it: `any`, or those in which each of these enums has one of these values. Absent where the
+   * spec does not specify them.
+   */
   readonly states?: 'any' | readonly States[]
   /** Names of the commands that come first. */
   readonly after: readonly string[]
 }
 
-/** When a report is sent. A path is that of wire keys from the report's body on, joined by dots. */
+/** When a report is sent. A path has wire keys from the report's body on, joined by dots. */
 export type Cadence =
   /** At each change of a field. */
   | { readonly is: 'on_change'; readonly field: string }
   /** At each step of a number. */
   | { readonly is: 'step'; readonly field: string; readonly by: number }
-  /** At intervals of so many milliseconds. */
+  /** Every `ms` milliseconds. */
   | { readonly is: 'every'; readonly ms: number }
-  /** At the latest so many milliseconds after a command that sets it off. */
+  /** Within `ms` milliseconds after a command that sets it off. */
   | { readonly is: 'within'; readonly ms: number }
 
-/** What every operation says of itself. */
+/** Facts common to every operation. */
 export interface OperationFacts {
   /** Name in the spec. */
   readonly name: string
-  /** Command code; `null` while the spec has not given one: such an operation cannot be sent. */
+  /** Command code; `null` while the spec has assigned none: then the operation cannot be sent. */
   readonly code: number | null
   /** Title in both languages. */
   readonly title: Text
   /** First version of the spec that has it, as `YYYY-MM` or `YYYY-MM-DD`. */
   readonly since?: string
-  /** Whether it has been withdrawn. */
+  /** `true` if it is deprecated. */
   readonly deprecated?: boolean
   /** Path of its page below the documentation's root. */
   readonly docs: string
@@ -68,92 +71,95 @@ export interface OperationFacts {
   readonly spec: string
 }
 
-/** What declares results besides success. */
+/** An operation that declares results besides success. */
 export interface Declares<Failure extends string> {
-  /** The results besides success that it declares, by their names. */
+  /** The declared results besides success, by name. */
   readonly errors: Readonly<Record<Failure, ResultText>>
 }
 
-/** A command: an app asks, the robot answers. */
+/** A command: an app sends a request, the robot a response. */
 export interface Command<Request, Response, Failure extends string = never> extends OperationFacts, Declares<Failure> {
   /** Always this word. */
   readonly is: 'command'
-  /** What it does to the robot. */
+  /** Effect on the robot. */
   readonly effect: Effect
-  /** What it asks. */
+  /** Schema of the request. */
   readonly request: Struct<Request>
-  /** What it is answered with. */
+  /** Schema of the response. */
   readonly response: Struct<Response>
   /** The spec's example of the request. */
   readonly requestExample: () => Request
   /** The spec's example of the response. */
   readonly responseExample: () => Response
-  /** What has to hold before it is accepted; absent where the spec says nothing of that. */
+  /** Conditions under which it is accepted; absent where the spec does not specify any. */
   readonly preconditions?: Preconditions
 }
 
-/** A command that sets off reports which can be followed to an end. */
+/** A command that sets off reports, which can be followed to an end. */
 export interface FollowedCommand<Request, Response, Body, Failure extends string = never>
   extends Command<Request, Response, Failure> {
-  /** What it sets off. */
+  /** The reports that it sets off. */
   readonly setsOff: SetOff<Request, Response, Body>
 }
 
-/** What a command sets off. */
+/** The reports that a command sets off. */
 export interface SetOff<Request, Response, Body> {
   /** The report. */
   readonly report: Report<Body>
-  /** What ties a report to a call: values of its request or its answer, and of the report. None: any such report belongs. */
+  /**
+   * Pairs of values that tie a report to a call. One is from the request or the response, the other from the report. An
+   * empty list ties every such report.
+   */
   readonly tied: readonly Tie<Request, Response, Body>[]
 }
 
-/** Two values that are the same in a call and in a report that belongs to it. */
+/** Two values that are equal in a call and in a report that belongs to it. */
 export interface Tie<Request, Response, Body> {
-  /** That of the call. */
+  /** The value of the call. */
   call(request: Request, response: Response): unknown
-  /** That of the report. */
+  /** The value of the report. */
   report(body: Body): unknown
 }
 
-/** A report: the robot says, an app acknowledges. */
+/** A report: the robot sends it, an app acknowledges it. */
 export interface Report<Body, Name extends string = string> extends OperationFacts {
   /** Always this word. */
   readonly is: 'report'
   /** Its name among those of `reports()`. */
   readonly case: Name
-  /** What it says. */
+  /** Schema of the report. */
   readonly body: Struct<Body>
-  /** The keys of its acknowledgement beside those of the envelope. */
+  /** Schema of the acknowledgement's keys, without those of the envelope. */
   readonly acknowledgement: AnyStruct
   /** The spec's example of it. */
   readonly example: () => Body
-  /** How its acknowledgement is awaited; absent for the protocol's default. */
+  /** Policy for its acknowledgement; absent for the protocol's default. */
   readonly ack?: AckPolicy
-  /** When it is sent; absent where the spec says nothing of that. */
+  /** When the report is sent; absent where the spec does not specify it. */
   readonly cadence?: Cadence
-  /** What says how far a process has come; absent where the spec says nothing of that. */
+  /** The field with the progress of a process; absent where the spec does not specify one. */
   readonly state?: StateOf<Body>
-  /** What else may say that something failed. */
+  /** Other fields that may report a failure. */
   readonly failures?: readonly StateOf<Body>[]
 }
 
-/** The value of a report that says how far a process has come, or that something failed. */
+/** A report's value with the progress of a process, or with a failure. */
 export interface StateOf<Body> {
   /** Its enum. */
   readonly schema: AnyEnum
-  /** Takes it from a report; `undefined` if the report does not say. */
+  /** Returns the value; `undefined` if the report does not have it. */
   of(body: Body): number | bigint | string | undefined
 }
 
-/** A stream: one side sends frames over the data port, nobody answers. */
+/** A stream: one side sends frames over the data port, without responses. */
 export interface Stream<Content> extends OperationFacts {
   /** Always this word. */
   readonly is: 'stream'
-  /** Which side sends it. */
+  /** The side that sends it. */
   readonly from: 'app' | 'robot'
-  /** What a frame carries; `null` for raw bytes. */
+  /** Schema of a frame's content; `null` for raw bytes. */
   readonly content: Content extends Uint8Array ? null : Struct<Content>
-  /** The media type of raw bytes, where one is stated. */
+  /** The media type of raw bytes, if specified. */
   readonly mediaType?: string
   /** Name of the command after which it is sent. */
   readonly startedBy?: string
@@ -165,19 +171,19 @@ export interface Stream<Content> extends OperationFacts {
 export interface AnyCommand extends OperationFacts {
   /** Always this word. */
   readonly is: 'command'
-  /** What it does to the robot. */
+  /** Effect on the robot. */
   readonly effect: Effect
-  /** What it asks. */
+  /** Schema of the request. */
   readonly request: AnyStruct
-  /** What it is answered with. */
+  /** Schema of the response. */
   readonly response: AnyStruct
   /** The spec's example of the request. */
   readonly requestExample: () => unknown
   /** The spec's example of the response. */
   readonly responseExample: () => unknown
-  /** The results besides success that it declares. */
+  /** The declared results besides success, by name. */
   readonly errors: Readonly<Record<string, ResultText>>
-  /** What has to hold before it is accepted. */
+  /** Conditions under which it is accepted. */
   readonly preconditions?: Preconditions
 }
 
@@ -187,13 +193,13 @@ export interface AnyReportOf extends OperationFacts {
   readonly is: 'report'
   /** Its name among those of `reports()`. */
   readonly case: string
-  /** What it says. */
+  /** Schema of the report. */
   readonly body: AnyStruct
-  /** The keys of its acknowledgement beside those of the envelope. */
+  /** Schema of the acknowledgement's keys, without those of the envelope. */
   readonly acknowledgement: AnyStruct
   /** The spec's example of it. */
   readonly example: () => unknown
-  /** How its acknowledgement is awaited. */
+  /** Policy for its acknowledgement. */
   readonly ack?: AckPolicy
   /** When it is sent. */
   readonly cadence?: Cadence
@@ -203,23 +209,23 @@ export interface AnyReportOf extends OperationFacts {
 export interface AnyStream extends OperationFacts {
   /** Always this word. */
   readonly is: 'stream'
-  /** Which side sends it. */
+  /** The side that sends it. */
   readonly from: 'app' | 'robot'
-  /** What a frame carries; `null` for raw bytes. */
+  /** Schema of a frame's content; `null` for raw bytes. */
   readonly content: AnyStruct | null
 }
 
-/** A report that has arrived, by its name: `case` tells which, `value` is what it says. */
+/** A received report. `case` is its name, `value` its content. */
 export interface Reported<Name extends string, Body> extends Tagged<Name, Body> {
   /** Command code. */
   readonly code: number
   /** Message id. */
   readonly id: number
-  /** When it was sent, in milliseconds since 1970, if it says so. */
+  /** Time the report was sent, in milliseconds since 1970; `null` if it carries no time. */
   readonly time: number | null
 }
 
-/** Whether a command is accepted in a state, as far as it depends on states of this enum. */
+/** Returns `true` if the command is accepted in `state`, as far as states of this enum decide it. */
 export function acceptedIn<State>(command: AnyCommand, schema: Enum<State>, state: State): boolean {
   const states = command.preconditions?.states
   if (states === undefined || states === 'any') return true

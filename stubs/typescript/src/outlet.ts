@@ -1,47 +1,47 @@
-// What is to be sent over a connection: gathered, and written when there is room.
+// Outgoing bytes of a connection: gathered, and written when there is room.
 
 import { Alarm, Change } from './alarm.ts'
 import { joined } from './frames.ts'
 import type { Clock, Transport } from './platform.ts'
 
-/** What is handed to a transport at once, in bytes. */
+/** Most bytes handed to a transport at once. */
 const WRITE = 256 * 1024
 
 /**
- * So much, in bytes, goes out before this moment is over: the other side is at work on the first of many frames while the last
- * are still being made.
+ * Once this many bytes are gathered, they are written without waiting for the end of the turn. The other side can work
+ * on the first of many frames while the last are still being encoded.
  */
 const EAGER = 4 * 1024
 
 /** Most writes at a time. */
 const AT_A_TIME = 4
 
-/** What an outlet is told. */
+/** Events of an outlet. */
 export interface OutletEvents {
-  /** The other side has not taken enough for too long. */
+  /** The other side has not taken enough bytes in time. */
   stalled(): void
   /** The transport broke. */
   broke(problem: unknown): void
 }
 
-/** How far something has come since there was enough of it. */
+/** Measures progress since a moment: the bytes that have passed. */
 export class Flow {
-  /** When there was, or when it began to matter. */
+  /** Start of the period. */
   since: number
   private bytes = 0
 
-  /** Nothing has come. */
+  /** Starts at `now` with zero bytes. */
   constructor(now: number) {
     this.since = now
   }
 
-  /** It begins again. */
+  /** Starts again. */
   begin(now: number): void {
     this.since = now
     this.bytes = 0
   }
 
-  /** Bytes have come; so many make progress. */
+  /** Adds bytes; `least` of them count as progress. */
   add(bytes: number, least: number, now: number): void {
     this.bytes += bytes
     if (this.bytes >= least) this.begin(now)
@@ -63,13 +63,13 @@ export class Outlet {
   private gathered = 0
   /** Writes that have not ended. */
   private writes = 0
-  /** A write has been put off to the end of this moment. */
+  /** A write is scheduled for the end of the turn. */
   private isDue = false
-  /** Of a long write not all has been handed to the transport: nothing else may come between. */
+  /** Part of a long write has been handed to the transport: no other bytes may come between. */
   private isSplit = false
   private over = false
 
-  /** `stall`: how long less than `least` bytes may be taken, in milliseconds. */
+  /** Creates the outlet. It stalls if fewer than `least` bytes are taken in `stall` milliseconds. */
   constructor(transport: Transport, clock: Clock, stall: number, least: number, events: OutletEvents) {
     this.transport = transport
     this.clock = clock
@@ -86,12 +86,12 @@ export class Outlet {
     )
   }
 
-  /** Bytes that have not been taken yet. */
+  /** Number of bytes not yet taken. */
   get unsent(): number {
     return this.held
   }
 
-  /** Sends bytes, with all else that is said at this moment. */
+  /** Sends bytes, together with all others pushed in the same turn. */
   push(bytes: Uint8Array): void {
     if (this.over) return
     if (this.held === 0) this.flow.begin(this.clock.now())
@@ -146,13 +146,13 @@ export class Outlet {
     )
   }
 
-  /** Resolves once less than so much is unsent, or nothing will be any more. Whether it has been sent. */
+  /** Waits until fewer than `bytes` bytes are unsent, or the outlet has ended. Returns `false` if it has ended. */
   async below(bytes: number): Promise<boolean> {
     while (this.held >= bytes && !this.over) await this.changed.wait()
     return !this.over
   }
 
-  /** Sends nothing any more. */
+  /** Stops sending. */
   stop(): void {
     this.over = true
     this.alarm.stop()
@@ -160,12 +160,12 @@ export class Outlet {
   }
 }
 
-/** How long a closing connection tries to send what is left, and waits for the other side's end; milliseconds. */
+/** Time a closing connection has to send the rest and to wait for the other side's end, in milliseconds. */
 const CLOSING = 1000
 
 /**
- * Sends what is left, says that this is all, and waits until the other side has been `read` to its end: for a second, and
- * then it is closed.
+ * Sends the rest, closes this direction and waits until the other side has been `read` to its end. After one second the
+ * connection is closed in any case.
  */
 export async function goodbye(
   transport: Transport,

@@ -1,4 +1,4 @@
-// Schemas as reader and writer use them: each is prepared once.
+// Schemas prepared for reader and writer, each only once.
 
 import { isConstrained } from './constraint.ts'
 import type { AnyChoice, AnyEnum, AnyStruct, FieldSchema, ListSchema, NamedSchema, TypeSchema } from './schema.ts'
@@ -8,31 +8,31 @@ export type { AnyStruct } from './schema.ts'
 /** A value of any kind. */
 export type Value = unknown
 
-/** A field, prepared. */
+/** A prepared field. */
 export interface FieldPlan {
   /** Its name in code. */
   readonly name: string
-  /** What the schema says. */
+  /** Schema of the field. */
   readonly schema: FieldSchema
-  /** Where its value is among those of the object. */
+  /** Index of its value among those of the object. */
   readonly slot: number
-  /** The key as it is written in front of a value. */
+  /** The key as written before a value. */
   readonly lead: string
-  /** The same in UTF-8. */
+  /** `lead` in UTF-8. */
   readonly leadBytes: Uint8Array
-  /** Matches all of a text. */
+  /** Matches a whole text; `null` for no pattern. */
   readonly pattern: RegExp | null
-  /** Whether it demands anything of its values beyond their type. */
+  /** `true` if it constrains its values beyond their type. */
   readonly isConstrained: boolean
 }
 
-/** A struct, prepared. */
+/** A prepared struct. */
 export interface StructPlan {
   /** Its fields, in the order in which they are sent. */
   readonly fields: readonly FieldPlan[]
-  /** The same by each key under which they are accepted. */
+  /** The fields by each key that they accept. */
   readonly byKey: ReadonlyMap<string, FieldPlan>
-  /** Those that demand something of their values. */
+  /** The fields with constraints. */
   readonly constrained: readonly FieldPlan[]
 }
 
@@ -69,7 +69,7 @@ export function planOf(struct: AnyStruct): StructPlan {
 
 const pairs = new WeakMap<StructPlan, WeakMap<StructPlan, StructPlan>>()
 
-/** Prepares the fields of one struct and those of another behind them, as if they were those of one. */
+/** Joins the fields of two structs, the second's after the first's. */
 export function joint(first: StructPlan, second: StructPlan): StructPlan {
   let known = pairs.get(first)
   if (!known) pairs.set(first, (known = new WeakMap()))
@@ -82,7 +82,7 @@ export function joint(first: StructPlan, second: StructPlan): StructPlan {
     }
     plan = {
       fields: [...first.fields, ...moved],
-      // A key that both have belongs to the first.
+      // A key of both belongs to the first.
       byKey: new Map([...[...second.byKey].flatMap(inPlace), ...first.byKey]),
       constrained: [],
     }
@@ -91,15 +91,15 @@ export function joint(first: StructPlan, second: StructPlan): StructPlan {
   return plan
 }
 
-/** What can stand behind a name. */
+/** A type that can have a name. */
 export type Named = AnyStruct | AnyEnum | AnyChoice
 
-/** The type behind a name. */
+/** Returns the type with this name. */
 export function named(type: NamedSchema): Named {
   return type()
 }
 
-/** Whether it is the type of a list. */
+/** Returns `true` for the type of a list. */
 export function isList(type: TypeSchema): type is ListSchema {
   return typeof type === 'object'
 }

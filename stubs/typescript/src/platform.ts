@@ -1,4 +1,5 @@
-// What a connection runs on. It is handed in: Node.js has sockets, a browser WebSockets, a test pipes and a clock of its own.
+// The platform that a connection runs on. The caller supplies it: sockets in Node.js, WebSockets in a browser, pipes
+// and a virtual clock in a test.
 
 import type { GunzipFault } from './algorithms.ts'
 
@@ -6,22 +7,27 @@ import type { GunzipFault } from './algorithms.ts'
 export interface Transport {
   /** Address of the other side, without its port. */
   readonly remote: string
-  /** The next bytes, which must not change afterwards; `null` once the other side sends no more. Rejects if it broke. */
+  /**
+   * Returns the next bytes, which must not change afterwards; `null` once the other side has ended. Rejects if the
+   * transport broke.
+   */
   read(): Promise<Uint8Array | null>
-  /** Sends bytes; resolves when there is room for more. Rejects if it broke. */
+  /** Sends bytes. Resolves when there is room for more. Rejects if the transport broke. */
   write(bytes: Uint8Array): Promise<void>
-  /** Sends no more; what has been written still arrives. */
+  /** Ends this direction. Bytes written before still arrive. */
   end(): void
   /** Ends both directions at once. */
   close(): void
 }
 
-/** Why a transport broke, or could not be made: the name that the platform has for it, such as `ECONNRESET`. */
+/**
+ * The error of a transport that broke or was not made. `reason` is the platform's name for it, such as `ECONNRESET`.
+ */
 export class TransportError extends Error {
   /** The name. */
   readonly reason: string
 
-  /** A break for this reason. */
+  /** Creates the error for a reason. */
   constructor(reason: string) {
     super(reason)
     this.name = 'TransportError'
@@ -29,71 +35,71 @@ export class TransportError extends Error {
   }
 }
 
-/** What a connection is made with. */
+/** Options of a new connection. */
 export interface DialOptions {
-  /** After how much silence the other side is asked whether it is there, in milliseconds; `null` not to ask. */
+  /** Silence before TCP probes the other side, in milliseconds; `null` for no probes. */
   readonly keepalive: number | null
-  /** Says that nobody waits for it any more. */
+  /** Aborts when the connection is no longer needed. */
   readonly signal: AbortSignal
 }
 
-/** Time, and when it is over. */
+/** Time and timers. */
 export interface Clock {
-  /** Milliseconds that never go back. */
+  /** Monotonic time, in milliseconds. */
   now(): number
   /** Milliseconds since 1970. */
   wallTime(): number
-  /** Calls back after so many milliseconds, unless what it gives is called before. */
+  /** Calls `then` after so many milliseconds. Returns a function that cancels this. */
   after(milliseconds: number, then: () => void): () => void
 }
 
-/** Something, now or later. */
+/** A value, now or later. */
 export type Soon<T> = T | Promise<T>
 
-/** Calls back with the value, at once if it is there. */
+/** Calls `then` with the value, at once if it is not a promise. */
 export function soon<T>(value: Soon<T>, then: (value: T) => void): void {
   if (value instanceof Promise) void value.then(then)
   else then(value)
 }
 
-/** MD5 and gzip, at once or later. */
+/** MD5 and gzip, synchronous or not. */
 export interface PlatformAlgorithms {
   /** The sixteen bytes of the MD5 digest. */
   md5(data: Uint8Array): Uint8Array
   /** Packs into one gzip member. */
   gzip(data: Uint8Array): Soon<Uint8Array>
   /**
-   * Unpacks one gzip member, and gives up as soon as more than `limit` bytes come out. Bytes behind the member, such as
-   * zeros or a second member, are `bad_gzip`.
+   * Unpacks one gzip member, and gives up once the output exceeds `limit` bytes. Bytes after the member, such as zeros
+   * or a second member, are `bad_gzip`.
    */
   gunzip(member: Uint8Array, limit: number): Soon<Uint8Array | GunzipFault>
 }
 
-/** What an app runs on. */
+/** The platform of an app. */
 export interface Platform {
   /** MD5 and gzip. */
   readonly algorithms: PlatformAlgorithms
-  /** Time. */
+  /** The clock. */
   readonly clock: Clock
   /** Makes a connection. */
   connect(host: string, port: number, options: DialOptions): Promise<Transport>
 }
 
-/** What accepts connections. */
+/** A listening socket. */
 export interface Listener {
-  /** The port at which it listens. */
+  /** The port that it listens on. */
   readonly port: number
-  /** Accepts no more. */
+  /** Accepts no more connections. */
   close(): void
 }
 
-/** How connections are accepted. */
+/** Options of a listener. */
 export interface ListenOptions {
-  /** After how much silence an app is asked whether it is there, in milliseconds; `null` not to ask. */
+  /** Silence before TCP probes an app, in milliseconds; `null` for no probes. */
   readonly keepalive: number | null
 }
 
-/** What a robot runs on. */
+/** The platform of a robot. */
 export interface ServerPlatform extends Platform {
   /** Accepts connections. */
   listen(host: string, port: number, options: ListenOptions, accept: (transport: Transport) => void): Promise<Listener>

@@ -24,8 +24,8 @@ export function mayFollow(schema: AnyEnum, previous: EnumValueOf, state: EnumVal
 }
 
 /**
- * Returns `true` if the spec allows a state after the previous one. Without a rule, every state is allowed. The same state and
- * a failure are always allowed.
+ * Returns `true` if the spec allows this state after the previous one. Without a rule, every state is allowed. The same
+ * state and a failure are always allowed.
  */
 export function isInOrder(schema: AnyEnum, previous: EnumValueOf, state: EnumValueOf): boolean {
   const { process } = schema
@@ -40,14 +40,17 @@ const following = (schema: AnyEnum, state: unknown): readonly unknown[] =>
     ([from]) => from === state,
   )?.[1] ?? []
 
-/** A message whose field contradicts its condition. */
+/** The error of a field that contradicts its condition. */
 export class ConditionError extends Error {
   /** Wire keys down to the field. */
   readonly path: string
-  /** It is missing although its condition holds, or there although it does not. */
+  /**
+   * `missing`: the field is absent although its condition holds. `unasked`: it is present although the condition does
+   * not hold.
+   */
   readonly kind: 'missing' | 'unasked'
 
-  /** A contradiction. */
+  /** Creates the error. */
   constructor(path: string, kind: 'missing' | 'unasked', sentence: string) {
     super(
       kind === 'missing'
@@ -62,7 +65,7 @@ export class ConditionError extends Error {
 
 type Fields = Readonly<Record<string, unknown>>
 
-/** Gives a message back, if each field is there exactly where its condition holds. Throws a `ConditionError`. */
+/** Returns the message if each field is present exactly where its condition holds. Throws a `ConditionError`. */
 export function checked<M>(schema: Struct<M>, message: M): M {
   checkFields(schema, message as Fields, '')
   return message
@@ -104,7 +107,7 @@ function checkValue(type: TypeSchema, value: unknown, at: string): void {
   }
 }
 
-/** Whether all of the fields have one of their values. Absent ones have what the receiver takes them for. */
+/** Returns `true` if each field has one of its values. An absent field has its default. */
 function holds(schema: AnyStruct, condition: ConditionSchema, message: Fields): boolean {
   return Object.entries(condition).every(([name, values]) => {
     const value = message[name] ?? schema.fields[name]?.default
@@ -121,10 +124,10 @@ const sentence = (schema: AnyStruct, condition: ConditionSchema): string =>
     )
     .join(' and ')
 
-/** Stands for what is kept out of texts for people. */
+/** Replaces sensitive values in texts for people. */
 const HIDDEN = '***'
 
-/** A copy of a message for logs and people: what is sensitive is left out. */
+/** Returns a copy of a message for logs and people, with sensitive values hidden. */
 export function redacted<M>(schema: Struct<M>, message: M): unknown {
   return redactFields(schema, message as Fields)
 }

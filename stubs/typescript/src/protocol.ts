@@ -1,4 +1,4 @@
-// A protocol with its texts, for tools that show any frame. Bodies are read by the schemas that the typed stubs use.
+// A protocol with its texts, for tools that show any frame. The schemas of the typed stubs read the bodies.
 
 import type { AnyStruct } from './schema.ts'
 import type { EnvelopesOf, FrameLayout, Limits, WireEncoding, WireField, WireKind } from './wire.ts'
@@ -11,7 +11,7 @@ export interface Text {
   readonly en: string
 }
 
-/** What a header field is for. */
+/** Role of a header field. */
 export type HeaderRole =
   | 'head'
   | 'kind'
@@ -23,7 +23,7 @@ export type HeaderRole =
   | 'plain_length'
   | 'digest'
 
-/** How the data of a frame is digested. */
+/** Digest algorithm of a frame's data. */
 export type DigestAlgorithm = 'md5' | 'crc32'
 
 /** A field of the frame's header. */
@@ -42,28 +42,28 @@ export interface Kind extends WireKind, Text {
   readonly port: number
 }
 
-/** How a frame's data is packed. */
+/** Encoding of a frame's data. */
 export interface Encoding extends WireEncoding, Text {
   /** Its name in code. */
   readonly name: string
 }
 
-/** Which of the two messages of an operation. */
+/** One of the two messages of an operation. */
 export type Side = 'request' | 'response'
 
 /** A command, a report or a stream. */
 export interface Operation extends Text {
   /** Its name in the spec. */
   readonly name: string
-  /** Which of them. */
+  /** The kind of operation. */
   readonly kind: 'command' | 'report' | 'stream'
-  /** Command code, `null` as long as none is assigned. */
+  /** Command code; `null` while none is assigned. */
   readonly code: number | null
   /** The schema of the request, or of a stream's frames; `null` for raw bytes. */
   readonly request: AnyStruct | null
   /** The schema of the response; `null` for a stream. */
   readonly response: AnyStruct | null
-  /** The request as JSON, with envelope; that of a stream has none. Empty for raw bytes. */
+  /** The request as JSON, with envelope; for a stream without. Empty for raw bytes. */
   readonly requestExample: string
   /** The response as JSON, with envelope; empty for a stream. */
   readonly responseExample: string
@@ -75,17 +75,17 @@ export interface Result extends Text {
   readonly code: number
   /** Its name in code. */
   readonly name: string
-  /** What the runtime uses it for. */
+  /** The runtime's use of it; `null` for none. */
   readonly role: string | null
 }
 
 /** Command codes with a common use. */
 export interface CodeRange extends Text {
-  /** The first of them. */
+  /** The first code. */
   readonly first: number
-  /** The last of them. */
+  /** The last code. */
   readonly last: number
-  /** What they are for. */
+  /** Their common use. */
   readonly use: string
 }
 
@@ -97,9 +97,9 @@ export interface Protocol extends FrameLayout {
   readonly header: readonly HeaderField[]
   /** Kinds of frames. */
   readonly kinds: readonly Kind[]
-  /** Ways to pack the data; none where the header does not say how it is packed. */
+  /** Encodings of the data; none if the header has no field for them. */
   readonly encodings: readonly Encoding[]
-  /** The keys of every message, and what they are for. */
+  /** The envelope's keys and their roles. */
   readonly envelope: EnvelopesOf
   /** Limits of the data from a peer. */
   readonly limits: Limits

@@ -1,4 +1,4 @@
-// Bodies as messages: JSON text read as the types of the schemas want it.
+// Reads JSON bodies as messages, with the types of the schemas.
 
 import { bytesOfBase64 } from './base64.ts'
 import { decoded } from './characters.ts'
@@ -14,13 +14,13 @@ import { ANY, CLOSE_LIST, CLOSE_OBJECT, LIST, OBJECT, STRING, Scanner } from './
 import type { Allowance } from './scanner.ts'
 import type { AnyEnum, EnumValueOf, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
 
-/** An object as it is being made. */
+/** An object under construction. */
 type Made = Record<string, Value>
 
-/** Stands for a key that has come without a value. */
+/** Marks a key that came without a value. */
 const ABSENT = Symbol('absent')
 
-/** The least and the greatest of each integer type. */
+/** Least and greatest value of each integer type. */
 export const INTEGERS: Readonly<Record<IntegerName, readonly [bigint, bigint]>> = {
   i8: [-(2n ** 7n), 2n ** 7n - 1n],
   i16: [-(2n ** 15n), 2n ** 15n - 1n],
@@ -32,7 +32,7 @@ export const INTEGERS: Readonly<Record<IntegerName, readonly [bigint, bigint]>> 
   u64: [0n, 2n ** 64n - 1n],
 }
 
-/** The same as numbers, of those that fit. */
+/** The same as numbers, for the types that fit. */
 export const SMALL: Readonly<Partial<Record<IntegerName, readonly [number, number]>>> = {
   i8: [-0x80, 0x7f],
   i16: [-0x8000, 0x7fff],
@@ -42,12 +42,12 @@ export const SMALL: Readonly<Partial<Record<IntegerName, readonly [number, numbe
   u32: [0, 0xffffffff],
 }
 
-/** The text of a body; no bytes stand for an object without keys. */
+/** Returns the text of a body. An empty body means an object without keys. */
 export function bodyText(data: Uint8Array): string {
   return data.length === 0 ? '{}' : decoded(data)
 }
 
-/** What one pass over a message with an envelope makes of it. */
+/** Result of one pass over a message with an envelope. */
 export interface Enveloped<E, M> {
   /** The keys of the envelope. */
   envelope: E
@@ -66,8 +66,8 @@ export function readMessage<M>(struct: Struct<M>, data: Uint8Array, allowance: A
 }
 
 /**
- * Reads the keys of an envelope and of a message in one pass, in any order; unknown ones belong to the message. What is
- * wrong with the envelope comes before what is wrong with the message. Throws a `BodyError`.
+ * Reads the keys of an envelope and of a message in one pass, in any order. Unknown keys belong to the message. An
+ * error in the envelope takes precedence over one in the message. Throws a `BodyError`.
  */
 export function readEnveloped<E, M>(
   envelope: Struct<E>,
@@ -85,8 +85,8 @@ export function readEnveloped<E, M>(
 }
 
 /**
- * Reads the same of a body that is JSON, and goes on behind each error. A value with an error is left out. Throws a `BodyError`
- * for any other value than an object.
+ * Reads a JSON body in the same way, but continues after each error and leaves out the invalid value. Throws a
+ * `BodyError` for any value other than an object.
  */
 export function readAll<E, M>(
   envelope: Struct<E>,
@@ -113,7 +113,7 @@ function both<E, M>(
   return whole(data, allowance, joint(first, second), make, findings)
 }
 
-/** Reads the envelope alone, whatever the message is. Throws a `BodyError`. */
+/** Reads only the envelope, for any message. Throws a `BodyError`. */
 export function readEnvelope<E>(envelope: Struct<E>, data: Uint8Array, allowance: Allowance): E {
   judge(data, allowance)
   return readAlone(envelope, data)
@@ -126,10 +126,10 @@ function readAlone<E>(envelope: Struct<E>, data: Uint8Array): E {
 
 const plan = <T>(struct: Struct<T>): StructPlan => planOf(struct)
 
-/** No bytes stand for an object without keys. */
+/** An empty body means an object without keys. */
 const NOTHING = Uint8Array.of(OBJECT, CLOSE_OBJECT)
 
-/** Reads all of a body as one object. */
+/** Reads a whole body as one object. */
 function whole<T>(
   data: Uint8Array,
   allowance: Allowance,
@@ -149,7 +149,7 @@ function whole<T>(
 const message = (slots: readonly Value[], extra: readonly ExtraKey[] | null, plan: StructPlan): Made =>
   finish(plan, slots, 0, extra, null)
 
-/** Throws what is wrong with a body as JSON, whatever its value is. */
+/** Checks that a body is valid JSON, of any value. Throws a `BodyError`. */
 export function judge(data: Uint8Array, allowance: Allowance): void {
   bodyText(data)
   if (data.length === 0) return
@@ -163,7 +163,7 @@ function readObject(scanner: Scanner, plan: StructPlan): Made {
   return finish(plan, slots, 0, readFields(scanner, plan, slots), scanner.findings)
 }
 
-/** Reads the values of an object into their slots, and gives the keys that the plan does not have. */
+/** Reads the values of an object into their slots. Returns the keys that the plan does not have. */
 function readFields(scanner: Scanner, { fields, byKey }: StructPlan, slots: Value[]): readonly ExtraKey[] | null {
   let extra: ExtraKey[] | null = null
   scanner.enter()
@@ -192,7 +192,7 @@ function readFields(scanner: Scanner, { fields, byKey }: StructPlan, slots: Valu
   return extra
 }
 
-/** Most peers send the keys in the order of the spec, without those that may be absent: then none of them is looked up. */
+/** Most peers send the keys in the order of the spec, without some optional ones. Then no key needs a look-up. */
 function inOrder(scanner: Scanner, fields: readonly FieldPlan[], from: number): FieldPlan | null {
   for (let slot = from; slot < fields.length; slot++) {
     const field = fields[slot]
@@ -203,7 +203,7 @@ function inOrder(scanner: Scanner, fields: readonly FieldPlan[], from: number): 
   return null
 }
 
-/** Reads the value of a field behind its key, which may be another than the one that is sent. */
+/** Reads the value of a field after its key, which may be one of its other keys. */
 function readField(scanner: Scanner, field: FieldPlan, key: string, slots: Value[]): void {
   const { schema, slot } = field
   const { at, depth, findings } = scanner
@@ -223,7 +223,7 @@ function readField(scanner: Scanner, field: FieldPlan, key: string, slots: Value
   findings?.leave()
 }
 
-/** Makes a message of the values of its fields, which begin at a slot, in their order. */
+/** Makes a message from the values of its fields, from slot `from` on. */
 function finish(
   { fields, constrained }: StructPlan,
   slots: readonly Value[],
@@ -248,7 +248,7 @@ function finish(
   return made
 }
 
-/** Throws an error, or notes it where the reader goes on. */
+/** Throws an error, or adds it to the findings. */
 function fail(problem: BodyError, findings: Findings | null): void {
   if (findings === null) throw problem
   findings.fault(problem)
@@ -325,7 +325,7 @@ function readEnum(scanner: Scanner, type: AnyEnum, schema: FieldSchema): Value {
   if (type.closed === true && !isKnown(type, value)) {
     throw new BodyError('unknown_value', Object.values(type.values).join(' | '))
   }
-  // A field that takes only some values refuses the others.
+  // A field that takes only some values refuses the others as an error, not as unknown.
   if (scanner.findings !== null && schema.only === undefined && !isKnown(type, value)) scanner.findings.unknownAt('')
   return value
 }
@@ -352,11 +352,11 @@ function readBool(scanner: Scanner, { form, lenientBool }: FieldSchema): boolean
   )
 }
 
-/** Whether a number is to be in quotes here. */
+/** Returns `true` if a number is in quotes here. */
 const isQuoted = (scanner: Scanner, { form, lenientNumber }: FieldSchema): boolean =>
   lenientNumber === true ? scanner.peek() === STRING : form === 'string'
 
-/** The text of a number, wherever its field lets it be. */
+/** Reads the text of a number, in quotes where the field allows that. */
 function numberText(scanner: Scanner, expected: string, { form, lenientNumber }: FieldSchema): string {
   if (scanner.peek() === STRING) {
     if (form !== 'string' && lenientNumber !== true) throw new BodyError('wrong_type', expected)
@@ -389,7 +389,7 @@ function readInteger(scanner: Scanner, type: IntegerName, schema: FieldSchema): 
   if (small && DIGITS.test(text)) {
     const value = Number(text)
     if (value < small[0] || value > small[1]) throw new BodyError('out_of_range', `${small[0]} … ${small[1]}`)
-    // Minus zero is zero.
+    // Turns minus zero into zero.
     return value + 0
   }
   const exact = integral(text)
@@ -398,12 +398,12 @@ function readInteger(scanner: Scanner, type: IntegerName, schema: FieldSchema): 
   if (exact < least || exact > most) throw new BodyError('out_of_range', `${least} … ${most}`)
   if (small) return Number(exact)
   if (schema.safe !== true) return exact
-  // Past the range of the field, which is asked later; a number would round it into the range.
+  // The range of the field is checked later. A number outside the safe range could round into it.
   return exact >= Number.MIN_SAFE_INTEGER && exact <= Number.MAX_SAFE_INTEGER ? Number(exact) : exact
 }
 
 function readFloat(scanner: Scanner, type: 'f32' | 'f64', schema: FieldSchema): number {
-  // Of 32 bits, what has a fraction is rounded once, from its text.
+  // A 32-bit fraction is rounded once, from its text.
   const plain = scanner.plainNumber(isQuoted(scanner, schema), type === 'f64')
   const text = Number.isNaN(plain) ? numberText(scanner, type, schema) : null
   const value = text === null ? plain : Number(text)
@@ -412,7 +412,10 @@ function readFloat(scanner: Scanner, type: 'f32' | 'f64', schema: FieldSchema): 
   return nearest
 }
 
-/** The nearest 32-bit float, as the number with the fewest digits that stands for it: 0.1 and not 0.10000000149011612. */
+/**
+ * Returns the nearest 32-bit float, as the double with the fewest digits that rounds to it: 0.1, not
+ * 0.10000000149011612.
+ */
 export function shortFloat(value: number): number {
   const nearest = Math.fround(value)
   if (nearest === value || !Number.isFinite(nearest)) return nearest

@@ -1,4 +1,4 @@
-// A result besides success: what a handler answers with, and what a peer has answered with.
+// A result other than success, sent by a handler or received from a peer.
 
 import type { Declares, ResultText } from './operation.ts'
 
@@ -9,7 +9,7 @@ export class Refusal extends Error {
   /** Text for people. Never rely on it. */
   readonly text: string
 
-  /** A refusal with this result code and text. */
+  /** Creates a refusal with this result code and text. */
   constructor(code: number, text: string) {
     super(`${code} ${text}`.trim())
     this.name = 'Refusal'
@@ -17,17 +17,17 @@ export class Refusal extends Error {
     this.text = text
   }
 
-  /** That of a result. */
+  /** Returns the refusal for a result. */
   static of({ code, text }: ResultText): Refusal {
     return new Refusal(code, text)
   }
 
-  /** One of the errors that a command declares. */
+  /** Returns the refusal for an error that a command declares. */
   static declared<Failure extends string>(command: Declares<Failure>, failure: NoInfer<Failure>): Refusal {
     return Refusal.of(command.errors[failure])
   }
 
-  /** Which of the errors that a command declares it is; `null` for any other result. */
+  /** Returns the name of the command's declared error; `null` for any other result. */
   declared<Failure extends string>(command: Declares<Failure>): Failure | null {
     for (const [name, { code }] of Object.entries<ResultText>(command.errors)) {
       if (code === this.code) return name as Failure

@@ -1,16 +1,16 @@
-// Room for bytes.
+// Allocates buffers.
 
 /** Bytes of a block. */
 const BLOCK = 64 * 1024
-/** What is longer has room of its own. */
+/** Longer arrays get a buffer each. */
 const SHORT = 4 * 1024
 
 let block = new Uint8Array(BLOCK)
 let used = 0
 
 /**
- * Room for so many bytes, all of which are to be written: what is short shares a block with others, which is much faster to
- * come by, and stays until none of them is held any more.
+ * Returns a buffer of `length` bytes; the caller writes all of them. Short buffers share a block, which is much faster
+ * to allocate. The block stays in memory until all of its buffers are free.
  */
 export function room(length: number): Uint8Array {
   if (length > SHORT) return new Uint8Array(length)
@@ -23,13 +23,13 @@ export function room(length: number): Uint8Array {
   return bytes
 }
 
-/** Texts of so many units or fewer are encoded here first: nobody knows before how many bytes they are. */
+/** Texts up to this many UTF-16 units are first encoded here, since the number of bytes is not known before. */
 const UNITS = 32 * 1024
 
 const encoder = new TextEncoder()
 const scratch = new Uint8Array(3 * UNITS)
 
-/** A text in UTF-8. */
+/** Encodes a text in UTF-8. */
 export function utf8Of(text: string): Uint8Array {
   if (text.length > UNITS) return encoder.encode(text)
   const { written } = encoder.encodeInto(text, scratch)

@@ -1,4 +1,4 @@
-// The runtime beneath the generated package.
+// The runtime of the generated package.
 
 export type { DefaultsOf } from './defaults.ts'
 export { withDefaults } from './defaults.ts'

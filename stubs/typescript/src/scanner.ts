@@ -1,25 +1,25 @@
-// JSON, read from left to right: the grammar, and nothing of types.
+// Reads JSON from left to right: only the grammar, no types.
 //
-// What steers are the bytes, since looking at one costs a fraction of looking at a character. Strings are cut out of a text
-// that has a character for each byte; those that are not ASCII are decoded by themselves, and checked then.
+// The scanner works on bytes, since reading a byte costs a fraction of reading a character. Strings are cut out of a
+// text with one character per byte. Strings that are not ASCII are decoded and checked one at a time.
 
 import { decoded, isAscii, oneForEach } from './characters.ts'
 import { BodyError } from './fault.ts'
 import type { Findings } from './fault.ts'
 import { hasLoneSurrogate } from './json.ts'
 
-/** What reading one body may cost. */
+/** Limits on reading one body. */
 export interface Allowance {
   /** Levels of nesting. */
   readonly depth: number
-  /** Keys of objects and items of lists, those of all levels together. */
+  /** Keys of objects and items of lists, on all levels together. */
   readonly values: number
 }
 
-/** More than a text can have, and still a small integer: the fastest there are. */
+/** More than a text can have, and still a small integer: the fastest kind. */
 const COUNTLESS = 2 ** 30 - 1
 
-/** Any cost, for a text that has been read within its allowance before. */
+/** No limits, for a text already read within its allowance. */
 export const ANY: Allowance = { depth: COUNTLESS, values: COUNTLESS }
 
 const SPACE = 0x20
@@ -31,7 +31,7 @@ const NINE = 0x39
 const COLON = 0x3a
 const BACKSLASH = 0x5c
 const DELETE = 0x7f
-/** What comes behind the last byte. */
+/** The code after the last byte. */
 const END = -1
 
 /** The closing bracket of a list. */
@@ -58,33 +58,33 @@ const ESCAPES: Readonly<Record<string, string>> = {
   t: '\t',
 }
 
-/** Strings up to this length are looked at byte by byte, which is faster than to begin with an expression. */
+/** Strings up to this length are read byte by byte, which is faster than a regular expression. */
 const SHORT = 64
 
-/** Numbers of so many digits are exact as they are, and so are the powers of ten that their fractions are of. */
+/** Numbers of up to this many digits are exact doubles. So are the powers of ten that their fractions need. */
 const EXACT = 15
 const TENS = Array.from({ length: EXACT + 1 }, (_, power) => 10 ** power)
 
 /**
- * A place in a JSON text. Each method that reads a value skips the white space in front of it, stops right behind it, and
- * throws a `BodyError` where the text is not what it has to be.
+ * A position in a JSON text. Each method that reads a value first skips white space and stops right after the value. It
+ * throws a `BodyError` if the text is invalid there.
  */
 export class Scanner {
   /** Bytes read. */
   at: number
   /** Levels that may still be entered. */
   depth: number
-  /** Takes errors where the reader goes on behind them; `null` where it stops at the first. */
+  /** Collects errors if the reader continues after them; `null` if it stops at the first. */
   readonly findings: Findings | null
   private readonly bytes: Uint8Array
   private readonly end: number
-  /** A character for each byte. */
+  /** One character per byte. */
   private readonly text: string
   private values: number
-  /** The string that has been read last has an escape. */
+  /** `true` if the last string had an escape. */
   private escaped = false
 
-  /** A place at the start of a text. */
+  /** Creates a scanner at the start of a text. */
   constructor(bytes: Uint8Array, allowance: Allowance, findings: Findings | null = null) {
     this.at = 0
     this.findings = findings
@@ -95,12 +95,12 @@ export class Scanner {
     this.values = Math.min(allowance.values, COUNTLESS)
   }
 
-  /** The byte at a place; `END` behind the last. */
+  /** Returns the byte at an index; `END` after the last. */
   private byte(at: number): number {
     return at < this.end ? (this.bytes[at] ?? END) : END
   }
 
-  /** Skips white space and gives the next byte; a negative number at the end. */
+  /** Skips white space and returns the next byte; a negative number at the end. */
   peek(): number {
     for (;;) {
       const code = this.byte(this.at)
@@ -109,7 +109,7 @@ export class Scanner {
     }
   }
 
-  /** Reads these bytes if the text goes on with them. */
+  /** Reads these bytes if they come next. Returns `true` if they do. */
   takeBytes(bytes: Uint8Array): boolean {
     const { at } = this
     const { length } = bytes
@@ -119,7 +119,7 @@ export class Scanner {
     return true
   }
 
-  /** Reads `literal` if the text goes on with it. */
+  /** Reads `literal` if it comes next. Returns `true` if it does. */
   take(literal: string): boolean {
     const found = this.text.startsWith(literal, this.at)
     if (found) this.at += literal.length
@@ -149,15 +149,15 @@ export class Scanner {
     return false
   }
 
-  /** Whether the next value is a number. */
+  /** Returns `true` if the next value is a number. */
   isNumber(): boolean {
     const code = this.peek()
     return code === MINUS || (code >= ZERO && code <= NINE)
   }
 
   /**
-   * Reads an integer of few digits, without fraction and exponent, in quotes or without; `NaN`, and nothing read, if that is not
-   * what comes.
+   * Reads an integer of few digits without fraction or exponent, in quotes if `quoted`. Otherwise returns `NaN` and
+   * reads nothing.
    */
   plainInteger(quoted: boolean): number {
     const value = this.plainNumber(quoted, false)
@@ -165,7 +165,7 @@ export class Scanner {
     return value === 0 ? 0 : value
   }
 
-  /** The same of a number of few digits, with or without a fraction. */
+  /** Reads a number of few digits, with or without a fraction. Otherwise returns `NaN`. */
   plainNumber(quoted: boolean, fraction: boolean = true): number {
     let code = this.peek()
     let { at } = this
@@ -193,10 +193,10 @@ export class Scanner {
       const behind = at - point - 1
       digits += behind
       if (behind === 0 || digits > EXACT) return Number.NaN
-      // Both are exact, and so the quotient is the nearest number there is.
+      // Both are exact, so the quotient is the nearest double.
       value /= TENS[behind] ?? Number.NaN
     }
-    // A point, an `e` or an `E`: there is more of it.
+    // A point, an `e` or an `E` means that the number continues.
     if (code === POINT || code === 0x65 || code === 0x45) return Number.NaN
     if (quoted) {
       if (code !== STRING) return Number.NaN
@@ -206,7 +206,7 @@ export class Scanner {
     return negative ? -value : value
   }
 
-  /** Reads a number and gives its text. */
+  /** Reads a number and returns its text. */
   number(): string {
     this.peek()
     NUMBER.lastIndex = this.at
@@ -216,10 +216,10 @@ export class Scanner {
     return found[0]
   }
 
-  /** Reads a string and gives what it stands for; half of a surrogate pair is no text. */
+  /** Reads a string and returns its value. Half of a surrogate pair is an error. */
   string(): string {
     const value = this.rawString()
-    // Text from UTF-8 has none by itself: only an escape makes one.
+    // Decoded UTF-8 has none: only an escape can make one.
     if (this.escaped && hasLoneSurrogate(value)) throw new BodyError('lone_surrogate', 'Unicode')
     return value
   }
@@ -245,7 +245,7 @@ export class Scanner {
     }
   }
 
-  /** Goes to the first byte that does not stand for itself in a string. Whether all up to there are ASCII. */
+  /** Advances to the first byte that needs decoding in a string. Returns `true` if all bytes up to there are ASCII. */
   private toPlainEnd(): boolean {
     const { bytes } = this
     const start = this.at
@@ -281,7 +281,7 @@ export class Scanner {
     return stands
   }
 
-  /** Reads the next value and gives its text. */
+  /** Reads the next value and returns its text. */
   valueText(): string {
     this.peek()
     const start = this.at
@@ -290,7 +290,7 @@ export class Scanner {
     return isAscii(text) ? text : decoded(this.bytes, start, this.at)
   }
 
-  /** Reads the next value and forgets it. Brackets are counted and not entered, so that no depth fills the stack. */
+  /** Skips the next value. Brackets are counted without recursion, so that no depth overflows the stack. */
   skip(): void {
     const closing: number[] = []
     for (;;) {
@@ -310,14 +310,14 @@ export class Scanner {
     }
   }
 
-  /** Goes back to the place in front of a value, and skips the value. */
+  /** Returns to the place before a value, and skips the value. */
   skipFrom(at: number, depth: number): void {
     this.at = at
     this.depth = depth
     this.skip()
   }
 
-  /** Behind a value: goes to the next one inside the brackets that are open; false if all are closed. */
+  /** Moves from the end of a value to the next value inside the open brackets. Returns `false` if all are closed. */
   private toNextValue(closing: number[]): boolean {
     for (;;) {
       const close = closing.at(-1)
@@ -346,7 +346,7 @@ export class Scanner {
     this.colon()
   }
 
-  /** Reads a string and makes nothing of it. */
+  /** Skips a string. */
   private skipString(): void {
     if (this.peek() !== STRING) throw this.bad('a string')
     this.at++
@@ -366,13 +366,13 @@ export class Scanner {
     this.at++
   }
 
-  /** Leaves one at its bracket. */
+  /** Leaves an object or a list after its bracket. */
   leave(): void {
     this.depth++
     this.at++
   }
 
-  /** Reads the closing bracket of what is empty. */
+  /** Reads the closing bracket if the object or list is empty. Returns `true` if it did. */
   endsAtOnce(close: number): boolean {
     const ends = this.peek() === close
     if (ends) this.leave()
@@ -391,7 +391,7 @@ export class Scanner {
     this.at++
   }
 
-  /** Behind a value: whether another one follows before the closing bracket, which is read otherwise. */
+  /** Returns `true` if another item follows. Otherwise reads the closing bracket. */
   goesOn(close: number): boolean {
     const code = this.peek()
     if (code === COMMA) {
@@ -409,12 +409,14 @@ export class Scanner {
     if (this.values < 0) throw new BodyError('too_many_values', 'fewer keys and items')
   }
 
-  /** Nothing but white space may be left. */
+  /** Checks that only white space is left. */
   finish(): void {
     if (this.peek() !== END) throw this.bad('nothing behind the value')
   }
 
-  /** Returns the keys of the object at hand and stays in front of it. The keys count, so the search ends at the limits. */
+  /**
+   * Returns the keys of the present object without moving. The keys count towards the limits, which bounds the search.
+   */
   keysAhead(): Set<string> {
     const { at, depth, values } = this
     const keys = new Set<string>()
@@ -432,7 +434,7 @@ export class Scanner {
     return keys
   }
 
-  /** The text is no JSON here. */
+  /** Returns the error for invalid JSON at this place. */
   bad(expected: string): BodyError {
     return new BodyError('bad_json', expected)
   }

@@ -1,4 +1,4 @@
-// What the runtime has to know of a message: one constant for each type, which the compiler holds to the type itself.
+// The runtime's schema of a message: one constant per type. The compiler checks it against the type.
 
 import type { Constraints } from './constraint.ts'
 
@@ -8,10 +8,10 @@ export type IntegerName = 'i8' | 'i16' | 'i32' | 'u8' | 'u16' | 'u32' | 'i64' | 
 /** A type without parts. */
 export type ScalarName = IntegerName | 'bool' | 'f32' | 'f64' | 'string' | 'base64' | 'json'
 
-/** A JSON value as its text, so that numbers keep every digit and repeated keys stay what they are. */
+/** A JSON value as text: numbers keep every digit, and repeated keys are kept. */
 export type JsonText = string
 
-/** A key that the spec does not know, with its value as it was written. */
+/** A key that the spec does not declare, with its value as received. */
 export interface ExtraKey {
   /** The key. */
   key: string
@@ -19,13 +19,13 @@ export interface ExtraKey {
   json: JsonText
 }
 
-/** Keys that the spec does not know, in their order: kept when a message is read, and sent again. */
+/** Undeclared keys in their order: kept when a message is read, and sent again. */
 export type Extra = readonly ExtraKey[]
 
-/** A type with a name. Behind a function, since types may hold one another. */
+/** A type with a name. It is a function, since types may be recursive. */
 export type NamedSchema = () => AnyStruct | AnyEnum | AnyChoice
 
-/** A struct, where its type does not matter. */
+/** A struct of any type. */
 export interface AnyStruct {
   /** Always this word. */
   readonly is: 'struct'
@@ -38,23 +38,23 @@ export interface AnyStruct {
 /** A value of an enum. */
 export type EnumValueOf = number | bigint | string
 
-/** An enum, where its type does not matter. */
+/** An enum of any type. */
 export interface AnyEnum {
   /** Always this word. */
   readonly is: 'enum'
   /** Its name. */
   readonly name: string
-  /** What its values are on the wire. */
+  /** Type of its values in JSON. */
   readonly repr: IntegerName | 'string'
   /** Other values are refused. */
   readonly closed?: boolean
   /** The known values. */
   readonly values: Readonly<Record<string, EnumValueOf>>
-  /** What the spec says of its values as states. */
+  /** The spec's facts about its values as states. */
   readonly process?: ProcessSchema<EnumValueOf>
 }
 
-/** A choice, where its type does not matter. */
+/** A choice of any type. */
 export interface AnyChoice {
   /** Always this word. */
   readonly is: 'choice'
@@ -76,7 +76,7 @@ export type TypeSchema = ScalarName | NamedSchema | ListSchema
 /** A value that a condition compares. */
 export type Comparable = number | bigint | string | boolean
 
-/** Under which values of the fields beside it a field is there. All of the fields must have one of their values. */
+/** Values of neighbouring fields under which a field is present. Each of those fields must have one of its values. */
 export type ConditionSchema = Readonly<Record<string, readonly Comparable[]>>
 
 /** A field of a message. */
@@ -87,7 +87,7 @@ export interface FieldSchema extends Constraints {
   readonly type: TypeSchema
   /** It may be absent or null. */
   readonly optional?: boolean
-  /** Of a 64-bit integer: its range fits a `number`, which is why it is not a `bigint`. */
+  /** For a 64-bit integer whose range fits a `number`: it is not a `bigint`. */
   readonly safe?: boolean
   /** Other keys under which it is accepted. */
   readonly also?: readonly string[]
@@ -99,25 +99,25 @@ export interface FieldSchema extends Constraints {
   readonly lenientNumber?: boolean
   /** A bool is also accepted as 0 or 1 and as a string. */
   readonly lenientBool?: boolean
-  /** It is there exactly where this holds. */
+  /** The field is present exactly when this condition holds. */
   readonly when?: ConditionSchema
-  /** It is there exactly where this does not hold. */
+  /** The field is present exactly when this condition does not hold. */
   readonly unless?: ConditionSchema
-  /** What the receiver takes for an absent field. */
+  /** Value that the receiver takes for an absent field. */
   readonly default?: Comparable
-  /** Kept out of texts for people. */
+  /** Hidden in texts for people. */
   readonly sensitive?: boolean
 }
 
-/** A value of a choice: the name of its form, and what this one holds. */
+/** A value of a choice, with the name of its form. */
 export interface Tagged<Name extends string = string, Value = unknown> {
-  /** Which form. */
+  /** Name of the form. */
   case: Name
-  /** What it holds. */
+  /** The value. */
   value: Value
 }
 
-/** What a type of TypeScript is in a schema. */
+/** Maps a TypeScript type to its type in a schema. */
 type TypeOf<T> = [T] extends [Uint8Array]
   ? 'base64'
   : [T] extends [readonly (infer Item)[]]
@@ -135,18 +135,18 @@ type TypeOf<T> = [T] extends [Uint8Array]
 /** The schema of an object. */
 type NamedOf<T> = [T] extends [Tagged] ? Choice<T> : Struct<T>
 
-/** What the schema of a field says beside its type and its presence. */
+/** A field's schema without its type and presence. */
 type Details = Omit<FieldSchema, 'type' | 'optional'>
 
-/** The schema of a field that is always there. */
+/** The schema of a required field. */
 interface Required<T> extends Details {
   /** Its type. */
   readonly type: TypeOf<T>
-  /** It may not be absent. */
+  /** It must be present. */
   readonly optional?: never
 }
 
-/** The schema of a field that may be absent. */
+/** The schema of an optional field. */
 interface Optional<T> extends Details {
   /** Its type. */
   readonly type: TypeOf<T>
@@ -157,7 +157,7 @@ interface Optional<T> extends Details {
 /** The schema of a field of this type. */
 type FieldOf<T> = undefined extends T ? Optional<Exclude<T, undefined>> : Required<T>
 
-/** The schemas of the fields of a message; unknown keys have none. */
+/** The schemas of a message's fields; extra keys have none. */
 type Fields<T> = { readonly [Name in Exclude<keyof T, 'extra'>]-?: FieldOf<T[Name]> }
 
 /** A message or a part of one: an object with known keys, in the order in which they are sent. */
@@ -170,15 +170,18 @@ export interface Struct<T> {
   readonly fields: Fields<T>
 }
 
-/** How the values of an enum follow one another as states of a process. */
+/** Rules for an enum's values as states of a process. */
 export interface ProcessSchema<T> {
-  /** Whether `next` names all that may follow, or only what usually does; absent where the spec says nothing of that. */
+  /**
+   * `complete` if `next` names all values that may follow, `normal` if only the usual ones; absent where the spec does
+   * not specify it.
+   */
   readonly order?: 'complete' | 'normal'
-  /** Which values follow a value. */
+  /** For each value, the values that may follow. */
   readonly next?: readonly (readonly [T, readonly T[]])[]
-  /** Those that nothing follows. */
+  /** Final values. */
   readonly final?: readonly T[]
-  /** Those that say that something failed. */
+  /** Values that mean a failure. */
   readonly error?: readonly T[]
 }
 
@@ -188,29 +191,29 @@ export interface Enum<T> {
   readonly is: 'enum'
   /** Its name. */
   readonly name: string
-  /** What its values are on the wire. */
+  /** Type of its values in JSON. */
   readonly repr: IntegerName | 'string'
   /** Other values are refused. */
   readonly closed?: boolean
   /** The known values, by their names. */
   readonly values: Readonly<Record<string, T>>
-  /** What the spec says of its values as states. */
+  /** The spec's facts about its values as states. */
   readonly process?: ProcessSchema<T>
 }
 
 /** The names of the forms of a choice. */
 type NameOf<T> = T extends Tagged<infer Name> ? Name : never
 
-/** What a form of a choice holds. */
+/** The value of a choice's form. */
 type HeldBy<T, Name> = T extends Tagged<Name & string, infer Value> ? Value : never
 
 /** The structs of the forms of a choice. */
 type Forms<T> = {
-  /** That of each form. */
+  /** Struct of each form. */
   readonly [Name in NameOf<T>]: () => Struct<HeldBy<T, Name>>
 }
 
-/** A choice: an object of the first form whose required keys are all there. */
+/** A choice: the first form whose required keys are all present applies. */
 export interface Choice<T> {
   /** Always this word. */
   readonly is: 'choice'

@@ -1,11 +1,12 @@
-// The session: which answer belongs to which request, what is due, what has been seen before.
+// The session: matches responses to requests, tracks due times, and detects repeated reports.
 //
-// It has no sockets and no clock: it is told what happened and what time it is, in milliseconds, and says what that
-// means. App and robot use the same machine: the one opens commands and receives reports, the other the reverse.
+// It has no sockets and no clock. The caller passes in each event with its time in milliseconds, and the session
+// returns its meaning. App and robot use the same class: the app opens commands and receives reports, the robot the
+// reverse.
 
-/** What a frame is about: an answer has the kind, code and id of what it answers. */
+/** Identity of a frame. A response has the kind, code and id of its request. */
 export interface FrameId {
-  /** Whether it answers a request. */
+  /** `true` for a response or an acknowledgement. */
   readonly response: boolean
   /** Kind of frame. */
   readonly kind: number
@@ -15,15 +16,15 @@ export interface FrameId {
   readonly id: number
 }
 
-/** How an answer is awaited. */
+/** Repetition of a request until its response comes. */
 export interface AckPolicy {
-  /** How long to wait before sending the request again, and after the last time; milliseconds. */
+  /** Time before the request is sent again, and after the last try, in milliseconds. */
   readonly timeout: number
-  /** How often to send it again. */
+  /** Number of repetitions after the first try. */
   readonly retries: number
 }
 
-/** What a session is told beforehand. */
+/** Configuration of a session. */
 export interface SessionConfig {
   /** The kind of reports. */
   readonly report: number
@@ -31,9 +32,9 @@ export interface SessionConfig {
   readonly stream: number
   /** Most requests in flight. */
   readonly inFlight: number
-  /** How many reports that have been handed on are remembered. */
+  /** Number of delivered reports to remember. */
   readonly remembers: number
-  /** How acknowledgements are awaited: a report is remembered for twice as long as it may be repeated. */
+  /** Policy for acknowledgements. A report is remembered for twice the time that its repetitions take. */
   readonly ack: AckPolicy
   /** Id of the first request. */
   readonly firstId: number
@@ -41,37 +42,37 @@ export interface SessionConfig {
   readonly idMax: number
 }
 
-/** The answer to a request in flight, which has ended with it. */
+/** The response to a request in flight, which ends with it. */
 export interface Answer<T> {
   /** Always this word. */
   is: 'answer'
-  /** What the request was opened with. */
+  /** The token given to `open`. */
   token: T
 }
 
 /** A frame that ends no request. */
 export interface Arrival {
   /**
-   * `late`: an answer that nobody waits for; `command`: to be handled; `report`: to be handed on, which has to be told,
-   * and acknowledged; `repeated`: a report that has been handed on, only to be acknowledged; `stream`: raw bytes.
+   * `late`: a response without a waiting request. `command`: to handle. `report`: to deliver, then pass to `handedOn`,
+   * and acknowledge. `repeated`: a report already delivered, only to acknowledge. `stream`: raw bytes.
    */
   is: 'late' | 'command' | 'report' | 'repeated' | 'stream'
 }
 
-/** What a frame that has arrived means. */
+/** Meaning of a received frame. */
 export type Incoming<T> = Answer<T> | Arrival
 
-/** A request without an answer, and what it was opened with. */
+/** A request that ended without a response, with its token. */
 export interface Ended<T> {
   /** The request. */
   frame: FrameId
-  /** What it was opened with. */
+  /** The token given to `open`. */
   token: T
 }
 
-/** What time has brought about for a request in flight. */
+/** A request in flight that is due. */
 export interface Due<T> extends Ended<T> {
-  /** `again`: to be sent again with the same id; `expired`: it has ended without an answer. */
+  /** `again`: to send again with the same id. `expired`: ended without a response. */
   is: 'again' | 'expired'
 }
 
@@ -87,14 +88,14 @@ interface Seen {
   readonly frame: FrameId
   readonly digest: string | null
   connection: number
-  /** When it last came. */
+  /** Time of the last arrival. */
   at: number
 }
 
 const same = (a: FrameId, b: FrameId): boolean =>
   a.id === b.id && a.code === b.code && a.kind === b.kind && a.response === b.response
 
-/** The state of one peer's conversation with another. Every token comes back exactly once. */
+/** The state of one peer's exchange with another. Every token comes back exactly once. */
 export class Session<T> {
   private readonly config: SessionConfig
   private readonly limit: number
@@ -106,9 +107,9 @@ export class Session<T> {
   private connection = 0
   private nextId: number
 
-  /** A session without requests. */
+  /** Creates a session without requests. */
   constructor(config: SessionConfig) {
-    // An id that was in use a moment ago is not the next: at most half of all are in flight.
+    // A recently used id must not be reused at once, so at most half of all ids are in flight.
     const halfOfIds = Math.floor(config.idMax / 2) + 1
     this.config = config
     this.limit = Math.min(config.inFlight, halfOfIds)
@@ -117,12 +118,12 @@ export class Session<T> {
     this.nextId = config.firstId % (config.idMax + 1)
   }
 
-  /** How many requests are in flight. */
+  /** Number of requests in flight. */
   get inFlight(): number {
     return this.requests.size
   }
 
-  /** Puts a request in flight and gives what to send it with; `null` if too many are. */
+  /** Puts a request in flight and returns its frame id; `null` at the limit. */
   open(kind: number, code: number, policy: AckPolicy, now: number, token: T): FrameId | null {
     if (this.requests.size >= this.limit) return null
     while (this.requests.has(this.nextId)) this.nextId = this.after(this.nextId)
@@ -137,8 +138,8 @@ export class Session<T> {
   }
 
   /**
-   * Says what a frame that has arrived means. `digest` is that of its data: it tells apart reports that came over different
-   * connections, since a peer that restarts may use an id again.
+   * Classifies a received frame. `digest` is that of its data. It distinguishes reports from different connections,
+   * since a peer that restarts may reuse an id.
    */
   receive(frame: FrameId, digest: string | null, now: number): Incoming<T> {
     if (frame.response) {
@@ -160,7 +161,7 @@ export class Session<T> {
           ? isRecent
           : digest === entry.digest || (isRecent && entry.connection === this.connection)
       if (!isSame) continue
-      // It may come again for as long as ever: its age counts from now.
+      // It may be repeated for the whole period again: its age counts from now.
       this.seen.splice(index, 1)
       this.seen.push({ ...entry, connection: this.connection, at: now })
       return true
@@ -168,18 +169,18 @@ export class Session<T> {
     return false
   }
 
-  /** Remembers that a report has been handed on. */
+  /** Remembers a delivered report. */
   handedOn(report: FrameId, digest: string | null, now: number): void {
     this.seen.push({ frame: report, digest, connection: this.connection, at: now })
     if (this.seen.length > this.remembers) this.seen.shift()
   }
 
-  /** Notes that what comes from now on comes over another connection. */
+  /** Notes a new connection: frames from now on come over it. */
   reconnected(): void {
     this.connection++
   }
 
-  /** Ends a request because nobody waits for its answer any more, and gives its token; `null` if it has ended before. */
+  /** Ends a request that is no longer awaited. Returns its token; `null` if it has already ended. */
   cancel(frame: FrameId): Ended<T> | null {
     const request = this.take(frame)
     return request ? { frame: request.frame, token: request.token } : null
@@ -192,7 +193,7 @@ export class Session<T> {
     return request
   }
 
-  /** All that is due. */
+  /** Returns the requests that are due, and ends those without tries left. */
   due(now: number): Due<T>[] {
     const due: Due<T>[] = []
     for (const request of this.requests.values()) {
@@ -210,14 +211,14 @@ export class Session<T> {
     return due
   }
 
-  /** When something is due; `null` for never. */
+  /** Time the next request is due; `null` for none. */
   get nextDue(): number | null {
     let next: number | null = null
     for (const { due } of this.requests.values()) next = next === null ? due : Math.min(next, due)
     return next
   }
 
-  /** Ends every request in flight that `ends` says so of, as when the connection is lost. */
+  /** Ends and returns every request in flight for which `ends` returns true, for example after a lost connection. */
   endIf(ends: (frame: FrameId, token: T) => boolean): Ended<T>[] {
     const ended: Ended<T>[] = []
     for (const { frame, token } of this.requests.values()) {

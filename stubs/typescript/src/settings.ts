@@ -6,7 +6,7 @@ export type Check = (name: string, value: unknown) => void
 /** A check for each setting of a type. A setting without a check does not compile. */
 export type ChecksOf<Settings> = { readonly [Name in keyof Settings]-?: Check }
 
-/** A value as an error message shows it. */
+/** Returns a value as an error message shows it. */
 function shown(value: unknown): string {
   if (typeof value === 'string') return JSON.stringify(value.slice(0, 40))
   if (typeof value === 'function') return 'a function'
@@ -54,7 +54,7 @@ export const flag: Check = kind('true or false', (value) => typeof value === 'bo
 /** A function. */
 export const callback: Check = kind('a function', (value) => typeof value === 'function')
 
-/** The name or address of a host: to an empty one, platforms connect somewhere. */
+/** The name or address of a host. It must not be empty, since platforms accept an empty one. */
 export const host: Check = kind('a name or address', (value) => typeof value === 'string' && value.trim() !== '')
 
 /** A list whose items pass a check. */

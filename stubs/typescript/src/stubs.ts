@@ -1,5 +1,5 @@
-// What gives the stubs of a package their methods. A package declares them, group by group; each does the same with an
-// operation of its own.
+// Adds the methods of a package's stubs. A package declares the methods in groups; each calls the runtime with its
+// operation.
 
 import type { CallOptions } from './client/config.ts'
 import type { Connection } from './client/connection.ts'
@@ -10,11 +10,11 @@ import type { Audience, Context } from './server/types.ts'
 
 /** A class of a package. */
 export interface Stub {
-  /** Where its methods are. */
+  /** Holds its methods. */
   readonly prototype: object
 }
 
-/** Methods by their names, as an object literal has them: a stack trace shows the name. */
+/** Methods by name, as in an object literal: a stack trace shows the name. */
 type Methods = Readonly<Record<string, (...parameters: never[]) => unknown>>
 
 /** Adds methods to a class as its own body would. */
@@ -24,7 +24,7 @@ function add(stub: Stub, methods: Methods): void {
   }
 }
 
-/** Gives a client a method for each command, which calls it. */
+/** Adds a method for each command to a client, which calls it. */
 export function addCalls(client: Stub, commands: Readonly<Record<string, AnyCommand>>): void {
   for (const [name, command] of Object.entries(commands)) {
     add(client, {
@@ -35,7 +35,10 @@ export function addCalls(client: Stub, commands: Readonly<Record<string, AnyComm
   }
 }
 
-/** Gives a robot a method for each command, which answers with the spec's example; to what may move, if it is to pretend. */
+/**
+ * Adds a method for each command to a robot, which returns the spec's example. For commands with motion it does so only
+ * if `pretendMotion` is set.
+ */
 export function addExamples(robot: Stub, commands: Readonly<Record<string, AnyCommand>>): void {
   for (const [name, command] of Object.entries(commands)) {
     const moves = command.effect === 'motion' || command.effect === 'unknown'
@@ -48,7 +51,7 @@ export function addExamples(robot: Stub, commands: Readonly<Record<string, AnyCo
   }
 }
 
-/** Gives a reporter a method for each report, which pushes it to the apps of a server. */
+/** Adds a method for each report to a reporter, which pushes it to the apps of a server. */
 export function addReports(reporter: Stub, reports: Readonly<Record<string, AnyReportOf>>): void {
   for (const [name, report] of Object.entries(reports)) {
     add(reporter, {
@@ -59,7 +62,7 @@ export function addReports(reporter: Stub, reports: Readonly<Record<string, AnyR
   }
 }
 
-/** Gives the app's side of streams a method for each: to subscribe to one of the robot's, to send one of its own. */
+/** Adds a method per stream to the app's stub: subscribe to a robot's stream, or send an app's stream. */
 export function addAppStreams(streams: Stub, all: Readonly<Record<string, AnyStream>>): void {
   for (const [name, stream] of Object.entries(all)) {
     const of = stream as Stream<unknown>
@@ -79,7 +82,7 @@ export function addAppStreams(streams: Stub, all: Readonly<Record<string, AnyStr
   }
 }
 
-/** Gives the robot's side of streams a method for each of its own, which sends it to the data connections of a server. */
+/** Adds a method for each of the robot's streams. It sends a frame to the data connections of a server. */
 export function addRobotStreams(streamer: Stub, all: Readonly<Record<string, AnyStream>>): void {
   for (const [name, stream] of Object.entries(all)) {
     if (stream.from !== 'robot') continue

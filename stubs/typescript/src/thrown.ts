@@ -1,12 +1,12 @@
-// Errors of user code as log fields: class and place, and never the message, which may quote a body.
+// Errors of user code as log fields: only class and place. The message may quote a body.
 
 /** The log fields of an error. */
 export interface ThrownFields {
   /** Class of the error, or the type of a thrown value that is not an error. */
   readonly error: string
-  /** Innermost line of user code, as file, line and column; absent where the stack does not have it. */
+  /** Innermost line of user code, as file, line and column; absent if the stack does not have it. */
   readonly at?: string
-  /** The index that makes it a `LogFields`. */
+  /** The index signature of a `LogFields`. */
   readonly [field: string]: string
 }
 
@@ -15,7 +15,7 @@ const FRAME = /^\s*at (?:async )?(?:.* \()?(.+:\d+:\d+)\)?$/
 
 /** The places of a stack trace, innermost first. They follow the message, which may have lines that look like places. */
 function placesOf({ stack, message }: Error): string[] {
-  // A program may have stacks of another type made.
+  // A program may replace the stacks with another type.
   const start = typeof stack === 'string' ? stack.indexOf(message) : -1
   if (stack === undefined || start < 0) return []
   const lines = stack.slice(start + message.length).split('\n')

@@ -6,29 +6,29 @@ import { deflatedOf } from './gzip.ts'
 import { TransportError } from './platform.ts'
 import type { Clock, DialOptions, Platform, PlatformAlgorithms, Transport } from './platform.ts'
 
-/** A stream of the platform that changes bytes. */
+/** A stream of the platform that transforms bytes. */
 interface ByteTransform {
-  /** Where they come out. */
+  /** Output. */
   readonly readable: {
     getReader(): { read(): Promise<{ done: boolean; value?: Uint8Array }>; cancel(): Promise<void> }
   }
-  /** Where they go in. */
+  /** Input. */
   readonly writable: { getWriter(): { write(bytes: Uint8Array): Promise<void>; close(): Promise<void> } }
 }
 
 type MakesTransform = new (format: 'gzip' | 'deflate-raw') => ByteTransform
 
-/** What a browser has, and Node.js too, but the settings for Node.js do not name. */
+/** Globals of a browser and of Node.js that the TypeScript settings for Node.js do not declare. */
 const globals = globalThis as unknown as {
   readonly CompressionStream: MakesTransform
   readonly DecompressionStream: MakesTransform
   readonly WebSocket: new (url: string) => Socket
 }
 
-/** All that comes out of a transform of these bytes; `null` beyond the limit. Rejects if the bytes are none of its format. */
+/** Returns the transform's whole output; `null` beyond the limit. Rejects if the input is not in its format. */
 async function through(transform: ByteTransform, data: Uint8Array, limit: number): Promise<Uint8Array | null> {
   const writer = transform.writable.getWriter()
-  // What is wrong with it, the reader is told.
+  // The reader gets the error.
   const written = writer.write(data).then(() => writer.close())
   written.catch(() => {})
   const reader = transform.readable.getReader()
@@ -55,13 +55,13 @@ const isDeflated = (data: Uint8Array): Promise<boolean> =>
     () => false,
   )
 
-/** An empty deflated stream, and a byte too many. */
+/** An empty deflated stream with one extra byte. */
 const TOO_LONG = Uint8Array.of(3, 0, 0)
 let isLenient: Promise<boolean> | null = null
 
 /**
- * Returns `true` if deflated data ends before its last byte. Browsers have refused it by then, as their standard demands, but
- * Node.js 20 has not: there, what ends early is still whole without its last byte.
+ * Returns `true` if deflated data ends before its last byte. Browsers follow the standard and have refused it already.
+ * Node.js 20 has not: there, such data still inflates without its last byte.
  */
 async function endsEarly(deflated: Uint8Array): Promise<boolean> {
   isLenient ??= isDeflated(TOO_LONG)
@@ -97,7 +97,7 @@ export const webClock: Clock = {
   },
 }
 
-/** As much of a WebSocket as is used. */
+/** The used part of a WebSocket. */
 interface Socket {
   binaryType: string
   readonly bufferedAmount: number
@@ -107,10 +107,10 @@ interface Socket {
   addEventListener(type: 'message', listener: (event: { data: unknown }) => void): void
 }
 
-/** How often it is looked whether a WebSocket has sent what it was given; it tells nobody. */
+/** Interval for checking if a WebSocket has sent its data, in milliseconds: it has no event for that. */
 const LOOK = 10
 
-/** Most bytes that wait to be read. A WebSocket cannot ask the other side to pause, so beyond this it is closed. */
+/** Most bytes waiting to be read. A WebSocket cannot pause the other side, so it is closed beyond this. */
 const WAITING = 64 * 1024 * 1024
 
 class SocketTransport implements Transport {
@@ -184,8 +184,8 @@ class SocketTransport implements Transport {
 }
 
 /**
- * A browser cannot open sockets: `url` gives the address of the WebSocket that a bridge joins with a port of the robot, each
- * message so many bytes of the stream.
+ * Returns the platform of a browser, which cannot open sockets. `url` returns the address of a WebSocket for a host and
+ * port. A bridge behind it forwards the bytes of each message to the robot's port.
  */
 export function webPlatform(url: (host: string, port: number) => string): Platform {
   return {

@@ -1,4 +1,4 @@
-// What the runtime has to know of a protocol beneath its messages. A package has one constant of it.
+// The runtime's description of a protocol below its messages. A package has one constant of it.
 
 import type { AnyCommand, AnyReportOf, AnyStream, ResultText } from './operation.ts'
 import type { DigestAlgorithm, HeaderRole } from './protocol.ts'
@@ -11,15 +11,15 @@ export interface WireField {
   readonly offset: number
   /** Its number of bytes. */
   readonly size: number
-  /** Bytes as they come, or an unsigned integer in the frame's byte order. */
+  /** Raw bytes, or an unsigned integer in the frame's byte order. */
   readonly type: 'bytes' | 'uint'
-  /** What it is for, `null` if it has a fixed value. */
+  /** Role of the field; `null` if it has a fixed value. */
   readonly role: HeaderRole | null
-  /** How a digest is computed, `null` of any other field. */
+  /** Digest algorithm; `null` for any other field. */
   readonly algorithm: DigestAlgorithm | null
-  /** Sent where no role decides. */
+  /** Value sent for a field without a role. */
   readonly value: number
-  /** Of the plain length: a received 0 on a frame that is not compressed is accepted. */
+  /** For the uncompressed length: a received 0 on an uncompressed frame is accepted. */
   readonly zeroWhenPlain: boolean
 }
 
@@ -27,21 +27,21 @@ export interface WireField {
 export interface WireKind {
   /** Its number in the header. */
   readonly value: number
-  /** What such frames carry; reserved ones are refused. */
+  /** Content of such frames. Reserved ones are refused. */
   readonly role: 'stream' | 'command' | 'report' | 'reserved'
 }
 
-/** A way to pack the data of a frame. */
+/** An encoding of a frame's data. */
 export interface WireEncoding {
   /** Its number in the header. */
   readonly value: number
-  /** As it is, or as one gzip member. */
+  /** Plain data, or one gzip member. */
   readonly role: 'plain' | 'gzip'
 }
 
-/** How frames are laid out. */
+/** Layout of frames. */
 export interface FrameLayout {
-  /** Of all integers in the header. */
+  /** Byte order of all integers in the header. */
   readonly byteOrder: 'big' | 'little'
   /** Bytes of the header. */
   readonly headerLength: number
@@ -53,17 +53,17 @@ export interface FrameLayout {
   readonly responseHead: readonly number[]
   /** Kinds of frames. */
   readonly kinds: readonly WireKind[]
-  /** Ways to pack the data; none where the header does not say how it is packed. */
+  /** Encodings of the data; none if the header has no field for them. */
   readonly encodings: readonly WireEncoding[]
 }
 
-/** Results the runtime itself answers with. */
+/** Results that the runtime sends. */
 export interface Results {
-  /** The call did what it should. */
+  /** Success. */
   readonly success: ResultText
   /** Unknown command, reserved kind, wrong digest. */
   readonly protocol: ResultText
-  /** No answer from the handler in time. */
+  /** No response from the handler in time. */
   readonly timeout: ResultText
   /** A body that does not parse or breaks a constraint. */
   readonly invalid: ResultText
@@ -71,7 +71,7 @@ export interface Results {
   readonly expired: ResultText
 }
 
-/** The keys beside a message's own, and what they are for. */
+/** The envelope's keys and their roles. */
 export interface EnvelopeOf {
   /** All of them. */
   readonly struct: AnyStruct
@@ -79,29 +79,29 @@ export interface EnvelopeOf {
   readonly time?: string
 }
 
-/** The keys beside a response's own. */
+/** The envelope's keys of a response. */
 export interface ResponseEnvelopeOf extends EnvelopeOf {
-  /** The field with the result code; where there is none, any response says that all went well. */
+  /** The field with the result code; absent if every response means success. */
   readonly code?: string
-  /** The field with the text beside the code. */
+  /** The field with the result's text. */
   readonly text?: string
 }
 
-/** The keys beside a message's own, of both sides. */
+/** The envelope's keys of both sides. */
 export interface EnvelopesOf {
-  /** Of requests and reports. */
+  /** Envelope of requests and reports. */
   readonly request: EnvelopeOf
-  /** Of responses and acknowledgements. */
+  /** Envelope of responses and acknowledgements. */
   readonly response: ResponseEnvelopeOf
 }
 
-/** Bounds of everything that grows with what a peer sends. */
+/** Limits on everything that grows with the bytes from a peer. */
 export interface Limits {
   /** Longest frame, header included, in bytes. */
   readonly frameBytes: number
   /** Longest data after decompression, in bytes. */
   readonly inflatedBytes: number
-  /** Most bytes that one byte of compressed JSON may become, where more than 1 MiB come out. */
+  /** Most plain bytes per byte of compressed JSON, for more than 1 MiB of plain bytes. */
   readonly inflateRatio: number
   /** Deepest nesting of a JSON body. */
   readonly jsonDepth: number
@@ -115,17 +115,17 @@ export interface Limits {
   readonly connections: number
 }
 
-/** Times and limits where the user sets none; times in milliseconds. */
+/** Times and limits that apply unless the user sets others; times in milliseconds. */
 export interface Defaults {
-  /** How long a call waits for its response. */
+  /** Time a call waits for its response. */
   readonly callTimeout: number
-  /** How long a handler may take before the app is told. */
+  /** Time a handler may take before the app gets the result for a timeout. */
   readonly handlerTimeout: number
   /** Oldest message that is still served; `null` for any age. */
   readonly maxAge: number | null
   /** Acknowledgement of reports. */
   readonly ack: AckPolicy
-  /** Bounds. */
+  /** Limits. */
   readonly limits: Limits
 }
 
@@ -139,13 +139,13 @@ export interface Wire {
   readonly commandPort: number
   /** TCP port of streams. */
   readonly dataPort: number
-  /** How frames are laid out. */
+  /** Layout of frames. */
   readonly frame: FrameLayout
-  /** Keys beside a message's own. */
+  /** Keys of the envelope. */
   readonly envelope: EnvelopesOf
-  /** Results the runtime itself answers with. */
+  /** Results that the runtime sends. */
   readonly results: Results
-  /** Times and limits where the user sets none. */
+  /** Times and limits that apply unless the user sets others. */
   readonly defaults: Defaults
 }
 
@@ -163,19 +163,19 @@ export interface ProtocolOf {
 
 /** Command codes with a common use that a robot may handle as a whole. */
 export interface CodeRangeOf {
-  /** The first of them. */
+  /** The first code. */
   readonly first: number
-  /** The last of them. */
+  /** The last code. */
   readonly last: number
   /** The method of the robot. */
   readonly method: string
 }
 
-/** What a robot's methods are called: which command each handles. */
+/** Methods of a robot, with the command that each handles. */
 export interface ServiceOf {
   /** The command of each method. */
   readonly methods: Readonly<Record<string, AnyCommand>>
-  /** Codes that have no method of their own. */
+  /** Code ranges that share a method. */
   readonly ranges: readonly CodeRangeOf[]
   /** The method for all other codes. */
   readonly unknown: string

@@ -1,4 +1,4 @@
-// Messages as bodies. What a message breaks of its own constraints is found before anything is sent.
+// Writes messages as bodies. Broken constraints are found before anything is sent.
 
 import { base64Of } from './base64.ts'
 import { broken } from './constraint.ts'
@@ -16,7 +16,7 @@ import type { AnyEnum, EnumValueOf, ExtraKey, FieldSchema, IntegerName, Struct, 
 /** A message with the struct that describes it. */
 type Part = readonly [struct: AnyStruct, message: Value]
 
-/** Writes a message as JSON. Throws a `BodyError` if it breaks one of its own constraints. */
+/** Writes a message as JSON. Throws a `BodyError` if it breaks a constraint. */
 export function writeMessage<M>(struct: Struct<M>, message: M): string {
   return `{${members([[struct, message]])}}`
 }
@@ -29,12 +29,12 @@ export function writeEnveloped<E, M>(envelope: Struct<E>, keys: E, struct: Struc
   ])}}`
 }
 
-/** The text as it is sent. */
+/** Encodes the text as sent. */
 export function bytesOf(text: string): Uint8Array {
   return utf8Of(text)
 }
 
-/** How deep an extra key may go: the reader of the other side has the limit that counts. */
+/** Limits on an extra key: only the reader's depth on the other side matters. */
 const EXTRA: Allowance = { depth: 512, values: Number.POSITIVE_INFINITY }
 
 function members(parts: readonly Part[]): string {
@@ -62,7 +62,10 @@ function members(parts: readonly Part[]): string {
   return text
 }
 
-/** A plain object or an instance of a class, and no list, date, error or promise: these have other contents than keys. */
+/**
+ * Returns a plain object or an instance of a class. Lists, dates, errors and promises are refused: their content is not
+ * in keys.
+ */
 function asObject(value: Value, expected: string): Readonly<Record<string, Value>> {
   if (typeof value === 'object' && value !== null) {
     const isPlainObject = Object.getPrototypeOf(value) === Object.prototype
@@ -73,22 +76,22 @@ function asObject(value: Value, expected: string): Readonly<Record<string, Value
 }
 
 /**
- * Returns `true` if a message that has none of the keys of its struct has others: it is one of another type, and would be sent
- * without any key. TypeScript refuses it, too.
+ * Returns `true` if a message has keys, but none of its struct's. It has another type and would be sent without any
+ * key. TypeScript refuses it, too.
  */
 function isOther({ fields }: AnyStruct, own: Readonly<Record<string, Value>>): boolean {
   const isUnknown = (name: string): boolean => name !== 'extra' && !Object.hasOwn(fields, name)
   return Object.keys(own).some((name) => own[name] !== undefined && isUnknown(name))
 }
 
-/** The unknown keys of a message, which are handed in by the caller. */
+/** Returns the unknown keys of a message, which come from the caller. */
 function extraOf(value: Value): readonly ExtraKey[] {
   const isKey = (one: Partial<ExtraKey> | null | undefined): boolean => typeof one?.key === 'string'
   if (!Array.isArray(value) || !value.every(isKey)) throw new BodyError('wrong_type', '{ key, json }[]', 'extra')
   return value as readonly ExtraKey[]
 }
 
-/** A JSON text that has been handed in: it must not end what is around it. */
+/** Checks a JSON text from the caller: it must not close the surrounding object. */
 function checked(json: Value, key: string): string {
   if (typeof json !== 'string') throw new BodyError('wrong_type', 'JSON as its text', key)
   const scanner = new Scanner(bytesOf(json), EXTRA)
@@ -140,7 +143,9 @@ function writeText(value: Value): string {
   return isPlain(value) ? `"${value}"` : quoted(value)
 }
 
-/** Whether a text is short and stands for itself, as most do: to look is faster than to have it quoted. */
+/**
+ * Returns `true` for a short text without characters to escape, as most are. The check is faster than `JSON.stringify`.
+ */
 function isPlain(text: string): boolean {
   const { length } = text
   if (length > 40) return false
@@ -152,7 +157,7 @@ function isPlain(text: string): boolean {
   return true
 }
 
-/** A string as JSON. Half of a surrogate pair is no text, which peers refuse. */
+/** Returns a string as JSON. Half of a surrogate pair is an error, since peers refuse it. */
 function quoted(text: string): string {
   if (hasLoneSurrogate(text)) throw new BodyError('lone_surrogate', 'Unicode')
   return JSON.stringify(text)

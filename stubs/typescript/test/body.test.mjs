@@ -1,11 +1,11 @@
-// Bodies beyond the vectors: lengths are those of what a text stands for, and a bool has one form unless its field is lenient.
+// Bodies beyond the vectors: the lengths of decoded values, and the forms of a bool.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { readBody } from 'fc-protocol/codec'
 import { bare, ofOneKey } from './support.mjs'
 
-/** type, value, its length; `null` if it has none because it is at fault. */
+/** type, value, its length; `null` for an invalid value. */
 const CASES = [
   ['string', '', 0],
   ['string', 'ab', 2],
@@ -25,7 +25,7 @@ const CASES = [
   ['base64', '==', null],
   ['base64', 'A===', null],
   ['base64', '====', null],
-  // Bits that no byte takes.
+  // Spare bits that are not zero.
   ['base64', 'AB==', null],
   ['base64', 'AAB=', null],
   ['base64', 'AA-_', null],
@@ -43,7 +43,7 @@ for (const [type, value, length] of CASES) {
   })
 }
 
-/** What a bool may be sent as: the value as JSON, and whether it is taken as a bool, in a string and as a number. */
+/** Forms of a bool: the JSON value, and if it is accepted as a bool, in a string and as a number. */
 const BOOLS = [
   ['true', true, false, false],
   ['false', true, false, false],
@@ -56,7 +56,7 @@ const BOOLS = [
   ['-0', false, false, true],
 ]
 
-/** What no bool is sent as. */
+/** Values that are not a bool in any form. */
 const NO_BOOLS = ['2', '-1', '0.5', '1e99', '"1"', '"0"', '"yes"', '""', '[]', '[1]', '{}']
 
 const FORMS = [{}, { form: 'string' }, { form: 'number' }]
@@ -84,7 +84,7 @@ for (const value of NO_BOOLS) {
   })
 }
 
-/** What the value of an enum is at fault for, where its field takes only some. */
+/** Errors of enum values in a field that takes only some. */
 const CHOICES = [
   // repr, closed, values, only, value, fault
   ['u8', false, [0, 1, 6], [1, 6], 1, null],
@@ -101,7 +101,7 @@ const CHOICES = [
   ['string', true, ['day', 'night'], ['day'], 'noon', 'unknown_value'],
 ]
 
-/** An enum with these values, whose names are the values. */
+/** Returns an enum with these values, named after themselves. */
 const enumOf = (repr, closed, values) => () => ({
   is: 'enum',
   name: 'Inner',
@@ -141,7 +141,7 @@ const PART = {
   },
 }
 
-/** Body, names and paths of its faults, paths of unknown keys and values. */
+/** Body, names and paths of its errors, paths of unknown keys and values. */
 const SEVERAL = [
   [
     '{"parts":[{"value":256},{},{"value":"1","mode":9,"more":{}}],"name":"long","last":1,"x":[]}',

@@ -1,4 +1,4 @@
-// Calls: how each ends, whatever the robot does.
+// Ends of calls, for any behaviour of the robot.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -156,7 +156,7 @@ test('the first attempt may fail, by the network and by time', async () => {
   const late = ends(dial(toy, platform, { connectTimeout: 70 }))
   await platform.clock.advance(70)
   assert.equal((await late).kind, 'timeout')
-  // One that comes too late is closed.
+  // A connection that comes too late is closed.
   const raw = platform.join()
   await settle()
   assert.ok(raw.isClosed)

@@ -1,4 +1,4 @@
-// Messages beyond the vectors: which fault is named first, what is refused before it is sent, what reading may cost.
+// Messages beyond the vectors: the order of errors, checks before sending, and the limits of reading.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -30,7 +30,7 @@ const struct = {
 }
 const envelope = { is: 'struct', name: 'Envelope', fields: { time: { key: 'time', type: 'i64', optional: true } } }
 
-/** The kind and the path of what is thrown. */
+/** Returns the kind and the path of the error thrown. */
 function fault(run) {
   try {
     run()
@@ -45,14 +45,14 @@ const faultOf = (text, allowance = ANY) => fault(() => readMessage(struct, bytes
 
 test('a fault has its place, and of several the first in the order of the rules is named', () => {
   for (const [text, kind, path] of [
-    // That a text is no JSON comes before all that is in it.
+    // Invalid JSON comes before all errors inside it.
     ['{"whole":"x",}', 'bad_json', ''],
     [`{"whole":"x","x":${'['.repeat(65)}${']'.repeat(65)}}`, 'too_deep', ''],
-    // Types come before what is missing, and that before constraints.
+    // Wrong types come before missing fields, and these before constraints.
     ['{"text":"abcd","large":"x"}', 'wrong_type', 'large'],
     ['{"text":"abcd"}', 'missing_field', 'whole'],
     ['{"text":"abcd","whole":-1}', 'out_of_range', 'whole'],
-    // Those of an object inside come where it ends.
+    // Errors of a nested object come at its end.
     ['{"whole":-1,"parts":[{"of":1},{"of":6}]}', 'out_of_range', 'parts[1].of'],
     ['{"whole":1,"parts":[{"of":1},{}]}', 'missing_field', 'parts[1].of'],
     ['{"whole":1,"parts":[1]}', 'wrong_type', 'parts[0]'],
@@ -97,7 +97,7 @@ test('values are what the language has for them', () => {
       open: '{"x" : 1.0}',
     },
   )
-  // A key of the language's own objects is a key like any other.
+  // A key with the name of a built-in property is an ordinary key.
   const odd = read('{"whole":1,"__proto__":{"polluted":1},"constructor":2}')
   assert.deepEqual(
     odd.extra.map(({ key }) => key),
@@ -121,7 +121,7 @@ test('what breaks its own constraints is refused before it is sent', () => {
     [{ whole: 1, text: '\ud800' }, 'lone_surrogate', 'text'],
     [{ whole: 1, bytes: 'AAEC' }, 'wrong_type', 'bytes'],
     [{ whole: 1, parts: [{ of: 1 }, { of: 6 }] }, 'out_of_range', 'parts[1].of'],
-    // Text that is handed in as JSON cannot end what is around it.
+    // JSON text from the caller cannot end the surrounding object.
     [{ whole: 1, open: '1}, {' }, 'bad_json', 'open'],
     [{ whole: 1, extra: [{ key: 'x', json: '1,"whole":2' }] }, 'bad_json', ''],
   ]) {
@@ -139,7 +139,7 @@ test('what reading costs is bounded', () => {
   assert.deepEqual(faultOf('{"whole":1,"x":[[[1]]]}', { ...ANY, depth })?.[0], 'too_deep')
   assert.equal(faultOf('{"whole":1,"x":[1,2]}', { ...ANY, values: 4 }), null)
   assert.deepEqual(faultOf('{"whole":1,"x":[1,2]}', { ...ANY, values: 3 })?.[0], 'too_many_values')
-  // Not by the stack of the language.
+  // The scanner sets the limit, not the stack.
   const brackets = '['.repeat(100_000)
   assert.equal(faultOf(`{"x":${brackets}`)?.[0], 'too_deep')
   assert.equal(faultOf(`{"x":${brackets}${']'.repeat(100_000)}}`)?.[0], 'too_deep')
@@ -156,6 +156,6 @@ test('ids that are still in flight are passed over when they come round', () => 
     assert.equal(id, expected)
     assert.ok(session.cancel({ response: false, kind: 1, code: 5, id }))
   }
-  // No more than half of all ids.
+  // At most half of all ids.
   assert.deepEqual([open(), open(), open(), open()], [0, 1, 2, null])
 })

@@ -105,7 +105,7 @@ test('a `for await` that is left takes no more frames', async () => {
   }
   await raw.send(frame(400, 2), bytes(2))
   await settle()
-  // Nobody subscribes to it any more, so that it is handed to who takes the frames of no subscription.
+  // The stream has no subscription any more, so its frame goes to `recv`.
   assert.equal((await Promise.race([port.recv(), settle()]))?.id, 2)
   assert.equal((await subscribed.next()).done, true)
 })

@@ -1,4 +1,4 @@
-// Every public item has a comment, and so has each of its members: the declarations that the compiler writes are looked at.
+// Every public item and each of its members has a comment, in the declarations that the compiler writes.
 
 import assert from 'node:assert/strict'
 import { readdirSync, readFileSync } from 'node:fs'
@@ -9,7 +9,10 @@ import { root } from './support.mjs'
 const ITEM = /^export (?:declare )?(?:abstract )?(?:interface|type|const|let|function|class|enum|namespace) (\w+)/
 const MEMBER = /^ +(?:(?:readonly|static|abstract|protected|get|set) )*([\w$]+|"[^"]+"|\[[^\]]+\])\??(?:[:(<]|$)/
 
-/** The items and members of a file of declarations without a comment in front. A form of a union has one for all it holds. */
+/**
+ * Returns the items and members of a declaration file without a comment in front. One comment covers all forms of a
+ * union.
+ */
 function bare(declarations) {
   const lines = declarations.split('\n')
   let isUnion = false

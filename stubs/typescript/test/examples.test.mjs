@@ -1,4 +1,4 @@
-// The example programs end, whatever their robot does.
+// The example programs end, for any behaviour of their robot.
 
 import assert from 'node:assert/strict'
 import { spawn } from 'node:child_process'
@@ -13,7 +13,7 @@ import { root } from './support.mjs'
 
 const LOCAL = '127.0.0.1'
 
-/** A robot that answers like the example, and calls back with each request. */
+/** Serves a robot that responds like the example, and calls back with each request. */
 async function serving(context, asked) {
   const example = new ExampleRobot({ pretendMotion: true })
   const robot = new Proxy(example, {
@@ -48,7 +48,7 @@ async function run(context, name, ...args) {
 test('app_ends_with_1_after_a_failure', async (context) => {
   const sockets = new Set()
   const server = await serving(context, ({ code, connection }) => {
-    // By the last command the app has its data connection, which then closes.
+    // At the last command the app has its data connection, which then closes.
     if (code !== Fc.commands.at(-1).code) return
     for (const report of Fc.reports) void server.pushAny(connection, report, report.example())
     for (const socket of sockets) socket.destroy()

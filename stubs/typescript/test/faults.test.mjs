@@ -1,4 +1,4 @@
-// Of several faults in one body, that of `conformance/faults.json` is named, with the place where it is.
+// The first error of a body with several, with its place, as in `conformance/faults.json`.
 
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'

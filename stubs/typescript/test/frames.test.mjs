@@ -1,4 +1,4 @@
-// A stream of frames, split anywhere: the same frames and the same faults come out.
+// Streams split at any byte give the same frames and the same errors.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -6,7 +6,7 @@ import { FrameStream } from 'fc-protocol/runtime'
 import { protocols } from './protocols.mjs'
 import { bytesOf, codec, framingOf, holds, vectors } from './support.mjs'
 
-/** All that comes out of chunks. */
+/** Returns all frames and errors from the chunks. */
 function all(codec, chunks) {
   const stream = new FrameStream(framingOf(codec))
   const out = []
@@ -22,7 +22,7 @@ function all(codec, chunks) {
   return out
 }
 
-/** Bytes in chunks of a size. */
+/** Splits bytes into chunks of a size. */
 const split = (bytes, size) =>
   Array.from({ length: Math.ceil(bytes.length / size) }, (_, index) => bytes.slice(index * size, (index + 1) * size))
 

@@ -1,5 +1,5 @@
-// The golden vectors through the generated types: each message is read as its schema says, refused by name, and written
-// again; in the package's own protocol and in those that share nothing with it.
+// The golden vectors through the generated types, for the package's protocol and for others. Each message is decoded
+// with its schema and encoded again, or refused with the error's name.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -7,7 +7,7 @@ import { decodeFrame } from 'fc-protocol/codec'
 import { protocols } from './protocols.mjs'
 import { bytesOf, holds } from './support.mjs'
 
-/** JSON as `JSON.parse` has it, whose rounding both sides of a comparison have. */
+/** `JSON.parse` rounds numbers, so both sides of a comparison go through it. */
 const rounded = (text) => JSON.parse(text)
 
 for (const { name: of, codec, vectors, runtime, generated, wire } of protocols) {
@@ -58,7 +58,7 @@ for (const { name: of, codec, vectors, runtime, generated, wire } of protocols) 
         const written = writeEnveloped(envelope, read.envelope, struct, read.message)
         const text = Buffer.from(data).toString()
         assert.deepEqual(rounded(written), vector.canonical ?? vector.body ?? rounded(text), where)
-        // The same bytes, where everything is as it should be.
+        // Regular vectors give the same bytes.
         if (vector.case === 'plain' && !/\.0[,}\]]|[eE][+-]?[0-9]/.test(text)) assert.equal(written, text, where)
       }
       for (const [kind, list] of Object.entries({ accepted, rejected })) {

@@ -1,4 +1,4 @@
-// Protocols that have next to nothing, parts for an audience, and names that the language keeps for itself.
+// Minimal protocols, parts for an audience, and names that the language reserves.
 
 import assert from 'node:assert/strict'
 import { cpSync, readFileSync, writeFileSync } from 'node:fs'
@@ -45,7 +45,7 @@ test('each audience has a whole package', { skip: unlessGenerated }, () => {
 })
 
 test('commands that are called like members of a connection', { skip: unlessGenerated }, () => {
-  // As the spec would write them: `inFlight` is `in_flight`.
+  // Spelled as in the spec: `inFlight` is `in_flight`.
   const members = Object.getOwnPropertyNames(Connection.prototype).filter((name) => name !== 'constructor')
   const words = [...members, 'connect', 'connectLazy', 'core', 'server', 'pretendMotion', 'passThrough']
   const names = words.map((word) => word.replaceAll(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`))
@@ -58,7 +58,7 @@ test('commands that are called like members of a connection', { skip: unlessGene
 })
 
 test('names and texts that the language keeps for itself', { skip: unlessGenerated }, async (t) => {
-  // Of the one name that the language cannot have, the generator says so.
+  // The generator reports the one name that the language cannot have.
   const odd = packageOf('odd', 'odd', (text) => text)
   assert.throws(() => generate(odd), /`Error` already has a meaning in TypeScript/)
   const folder = packageOf('nasty', 'odd', (text) =>

@@ -1,4 +1,4 @@
-// Gzip members that a peer should not send, in frames that are right in all else.
+// Invalid gzip members in frames that are otherwise valid.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -11,7 +11,7 @@ import { webAlgorithms } from 'fc-protocol/web'
 const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
 const text = Buffer.from(operation.requestExample)
 
-/** The verdict on a frame whose data is this member, and which says that the text is in it. */
+/** Returns the error of a frame with this member as data. Its header has the length of the plain text. */
 function fault(member, plain = text, algorithms = nodeAlgorithms, limits = protocol.limits) {
   const kind = kindOf(protocol, operation).value
   const parts = { response: false, kind, code: operation.code, id: 1, gzip: true, data: plain }
@@ -23,7 +23,7 @@ const member = gzipSync(text)
 const changed = (at) =>
   Uint8Array.from(member, (byte, index) => (index === (at + member.length) % member.length ? byte ^ 1 : byte))
 
-/** Members that hold what their last bytes say, and are not one member. */
+/** Data with a valid trailer that is not a single member. */
 const several = (member) => [
   ['an empty member before it', Buffer.concat([gzipSync(''), member])],
   ['two empty members before it', Buffer.concat([gzipSync(''), gzipSync(''), member])],

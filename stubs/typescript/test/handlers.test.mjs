@@ -1,4 +1,5 @@
-// Handlers that fail, and what they return: the programmer learns of it, the app gets a refusal, and all others go on.
+// Handlers that fail or return something invalid: the programmer is told, the app gets a refusal, and other calls go
+// on.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -13,7 +14,7 @@ const ends = (promise) =>
     (error) => error,
   )
 
-/** A robot whose log and hook write into lists. */
+/** Serves a robot whose log and hook write into lists. */
 function watched(methods, config = {}) {
   const [lines, told] = [[], []]
   const log = (level, message, fields) => lines.push({ level, message, fields })
@@ -24,7 +25,7 @@ function watched(methods, config = {}) {
 
 class Stuck extends Error {}
 
-/** Calls `echo` once, and returns the answer. */
+/** Calls `echo` once, and returns the response. */
 async function callEcho({ join }, text = '') {
   const raw = join()
   await raw.send(ask(1), { text })
@@ -50,7 +51,7 @@ test('handler_error_is_logged_with_class_and_own_line', async () => {
       },
       'RangeError',
     ],
-    // The innermost line is inside the runtime, and the own one is here.
+    // The innermost line is inside the runtime; the first line of user code is here.
     [() => Refusal.declared(go, 'No such name'), 'TypeError'],
   ]) {
     const one = watched({ echo: handler })
@@ -71,7 +72,7 @@ test('handler_error_is_logged_without_its_message', async () => {
       throw new Error('secret')
     }
   }
-  /** Its stack has the message of the moment at which it was first looked at. */
+  /** The stack keeps the message from its first use. */
   const changed = (isSeen) => {
     const error = new Error('before')
     if (isSeen) assert.ok(error.stack)
@@ -180,7 +181,7 @@ test('handler_error_after_its_timeout_is_logged_too', async () => {
   )
   open[0].reject(new Stuck('late'))
   open[1].reject(new Refusal(7, 'late'))
-  // It has stopped because it was told to.
+  // It stops because its signal has aborted.
   open[2].reject(open[2].signal.reason)
   await settle()
   assert.deepEqual(
@@ -388,7 +389,7 @@ test('response_or_refusal_too_long_for_a_frame_is_an_error', async () => {
     )
     assert.equal((await callEcho(refuses)).result, 1)
   }
-  // Not even the protocol's own result fits.
+  // Even the protocol's own result does not fit.
   const one = watched({ echo: () => ({ text: '' }) }, { limits: { frameBytes: 60 } })
   const raw = one.join()
   await raw.send(ask(1), { text: '' })
@@ -455,7 +456,7 @@ test('requests_with_one_id_each_get_an_answer', async () => {
   assert.deepEqual([server.counters().callsSucceeded, server.counters().callsTimedOut], [4, 2])
 })
 
-/** An app that sends so many requests and reads nothing. */
+/** Joins an app that sends many requests and reads nothing. */
 async function pipelined(join, requests) {
   const raw = join(1000)
   raw.end.read = () => new Promise(() => {})
@@ -485,7 +486,7 @@ test('an_app_that_never_reads_is_not_read_and_holds_little', async () => {
         algorithms,
       )
       await pipelined(one.join, 2000)
-      // Of 100 MB of answers, those below the mark and those of the handlers at work.
+      // Of 100 MB of responses, only those up to the mark and those of running handlers exist.
       assert.ok(asked < 100, String(asked))
       assert.ok(one.server.memory() < 5_000_000, String(one.server.memory()))
       const other = one.join()

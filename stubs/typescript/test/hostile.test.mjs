@@ -1,4 +1,5 @@
-// Bodies as large as a frame may be, made to cost much: each gets its verdict, by work that grows with its length alone.
+// Bodies of the greatest length, built to be expensive. Each gets its result, with work that grows only with its
+// length.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -9,7 +10,7 @@ const SIZE = 16 * 1024 * 1024
 const constrained = { length: [0, SIZE] }
 const some = (text) => text.repeat(SIZE / text.length)
 
-/** name, type, constraints, the value as JSON, the fault. */
+/** name, type, constraints, the value as JSON, the error. */
 const CASES = [
   ['base64', 'base64', constrained, `"${some('AAAA')}"`, null],
   ['base64 with a slip at its end', 'base64', constrained, `"${some('AAAA')}AAA!"`, 'bad_base64'],
@@ -31,7 +32,7 @@ for (const [name, type, constraints, value, fault] of CASES) {
     const report = readBody(bare, ofOneKey(type, constraints), 'request', new TextEncoder().encode(text))
     assert.equal(report.faults[0]?.name ?? null, fault)
     const compacted = compact(text, protocol.limits.jsonDepth)
-    // What is not JSON stays as it is; here only one value has white space in it.
+    // Text that is not JSON is unchanged. Only one of these values contains white space.
     assert.equal(compacted.length, name === 'white space' ? '{"value":true}'.length : text.length)
   })
 }

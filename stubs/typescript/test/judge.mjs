@@ -1,5 +1,5 @@
-// Says of each frame, one in hex on a line, what this package makes of it, as a list in JSON on a line: what decoders in several
-// languages are compared by. `fc-reflect/tests/it/judges.rs` says what the lists are.
+// Decodes each frame, one in hex on a line, and prints the result as a list in JSON on a line. A test compares these
+// lists between languages; `fc-reflect/tests/it/judges.rs` describes them.
 
 import { createInterface } from 'node:readline'
 import { commands, reports } from 'fc-protocol'
@@ -13,7 +13,7 @@ const framing = new Framing(wire.frame, limits, nodePlatform.algorithms)
 const nothing = { is: 'struct', name: 'Nothing', fields: {} }
 const kinds = { command: framing.kind('command'), report: framing.kind('report'), stream: framing.kind('stream') }
 
-/** What the own keys of a frame are, where that is known. */
+/** The structs of frames, where known. */
 const known = new Map()
 const key = ({ response, kind, code }) => `${kind} ${code} ${response}`
 for (const { code, request, response } of Object.values(commands)) {

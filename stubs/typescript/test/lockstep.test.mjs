@@ -1,4 +1,4 @@
-// What a change of the spec does to a program: it has what is new, and the compiler names what is gone.
+// Effects of a changed spec on a program: it gets the new operations, and the compiler names the removed ones.
 
 import assert from 'node:assert/strict'
 import { writeFileSync } from 'node:fs'

@@ -1,4 +1,4 @@
-// How a connection is lost, and made again.
+// Losses of a connection, and reconnecting.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'

@@ -1,4 +1,4 @@
-// Messages to frames, and what belongs to what.
+// Messages as frames, and look-ups in a protocol.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'

@@ -1,5 +1,5 @@
-// Frames with a few bytes changed, cut and repeated, against a whole robot and a whole client: whatever comes, nothing is thrown,
-// and whoever else is connected is served.
+// Frames with a few bytes changed, cut and repeated, against a whole robot and a whole client. They throw no error, and
+// other connections are served.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -11,7 +11,7 @@ import { FakePlatform, pipe, Raw, settle } from './toy.mjs'
 
 const FRAMES = 10_000
 
-/** Numbers by chance, the same in each run. */
+/** Returns pseudo-random numbers, the same in each run. */
 function dice(seed) {
   let state = seed
   return (sides) => {
@@ -25,7 +25,9 @@ const frames = vectors.flatMap(({ accepted, rejected }) =>
 )
 const framing = new Framing(Fc.wire.frame, Fc.wire.defaults.limits, nodeAlgorithms)
 
-/** A frame of the vectors, changed: in its body and sealed again, so that the body is read, or anywhere. */
+/**
+ * Returns a changed frame of the vectors. Either its body changes and the frame is sealed again, or any byte changes.
+ */
 async function mutated(roll, idOf = (id) => id) {
   const source = frames[roll(frames.length)]
   const bytes = Uint8Array.from(source)
@@ -103,7 +105,7 @@ test('a client goes on, whatever a robot sends', { timeout: 120_000 }, async () 
   for (let sent = 0; sent < FRAMES; sent++) {
     const raw = pipes.at(-1)
     if (client.inFlight < 20) client.callAny(Fc.commands[roll(Fc.commands.length)], {}).catch(() => {})
-    // Most answers are to a call that there is.
+    // Most responses belong to a call in flight.
     const asked = [...client.core.session.requests.values()]
     const idOf = (id) =>
       id.response && asked.length > 0 && roll(5) ? { ...asked[roll(asked.length)].frame, response: true } : id

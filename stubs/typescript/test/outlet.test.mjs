@@ -1,4 +1,4 @@
-// What is pushed goes out in its order, in few writes, and not only at the end of the moment.
+// Pushed bytes go out in order, in few writes, and not only at the end of the turn.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -6,7 +6,7 @@ import { Outlet } from '../dist/src/outlet.js'
 
 const clock = { now: () => 0, wallTime: () => 0, after: () => () => {} }
 
-/** A transport that takes each write when it is told to. */
+/** Returns a transport whose writes the test completes. */
 function transport() {
   const writes = []
   return {
@@ -33,7 +33,7 @@ test('what is said at a moment is one write, unless it is much', async () => {
   await turn()
   assert.equal(outlet.unsent, 0)
   for (let count = 0; count < 10; count++) outlet.push(new Uint8Array(1000))
-  // The first of them are on their way before the last has been said.
+  // The first frames are being written before the last is pushed.
   assert.equal(to.writes.length, 3)
   await turn()
   assert.equal(outlet.unsent, 10_000)
@@ -58,7 +58,7 @@ test('the order holds around what is written in pieces, however late each write 
   for (let count = 0; count < 60; count++) {
     push(count % 7 === 3 ? 700_000 : 1 + ((count * 977) % 6000), count)
     if (count % 3 === 0) await turn()
-    // The latest first, where there are several.
+    // Completes the latest write first, if there are several.
     if (count % 2 === 0) to.writes[to.writes.length - 1]?.resolve()
     if (count % 5 === 0) for (; ended < to.writes.length; ended++) to.writes[ended].resolve()
   }

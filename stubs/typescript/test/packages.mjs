@@ -1,4 +1,4 @@
-// Packages of other protocols: what is generated beside the runtime of this one, compiled as a team would compile it.
+// Packages of other protocols: the generated files with this runtime, compiled as a team would do it.
 
 import assert from 'node:assert/strict'
 import { execFileSync, spawnSync } from 'node:child_process'
@@ -12,16 +12,16 @@ const tsc = path.join(root, 'node_modules/.bin/tsc')
 /** The folder of the repository. */
 export const repository = path.join(root, '../..')
 
-/** The generator, which the environment may name; null where it has not been built. */
+/** Path of the generator, which the environment may set; null if it is not built. */
 export const generator = (() => {
   const usual = path.join(repository, 'target/debug/fcproto')
   return process.env.FC ?? (existsSync(usual) ? usual : null)
 })()
 
-/** Why a test that needs the generator is left out; false where it is there. */
+/** Reason to skip a test that needs the generator; false if it is built. */
 export const unlessGenerated = generator === null ? 'the generator is not built: cargo build -p fc-cli' : false
 
-/** An empty folder of this name. */
+/** Returns an empty folder with this name. */
 export function emptyFolder(name) {
   const folder = path.join(root, 'dist/packages', name)
   rmSync(folder, { recursive: true, force: true })
@@ -29,12 +29,12 @@ export function emptyFolder(name) {
   return folder
 }
 
-/** What the generator says of a project whose spec and `fc.yaml` are in this folder. Throws if it finds a fault. */
+/** Returns the generator's output for the spec and `fc.yaml` in this folder. Throws if it finds an error. */
 export function generate(folder) {
   return execFileSync(generator, ['generate', '--root', folder], { encoding: 'utf8' })
 }
 
-/** What the compiler says of a folder with `generated` and programs beside it; the empty text if it is content. */
+/** Returns the compiler's output for a folder with `generated` and programs; empty if there are no errors. */
 export function compile(folder) {
   cpSync(path.join(root, 'src'), path.join(folder, 'src'), { recursive: true })
   const config = {
@@ -50,12 +50,12 @@ export function compile(folder) {
   return stdout + stderr
 }
 
-/** A module of a folder that has been compiled. */
+/** Returns a module of a compiled folder. */
 export function load(folder, file) {
   return import(pathToFileURL(path.join(folder, 'out', file)))
 }
 
-/** A folder with the spec of one of the other protocols, changed file by file, and the package made of it. */
+/** Makes a folder with the spec of one of the other protocols, changed file by file, and generates its package. */
 export function packageOf(name, protocol, change) {
   const folder = emptyFolder(name)
   cpSync(path.join(repository, 'fc-generated/tests', protocol, 'spec'), path.join(folder, 'spec'), { recursive: true })
@@ -68,7 +68,7 @@ export function packageOf(name, protocol, change) {
   return folder
 }
 
-/** The text of the meter's commands with one text in the place of another; other files stay as they are. */
+/** Replaces a text in the meter's commands. Other files do not change. */
 export const replaced = (from, to) => (text, file) => {
   if (!file.endsWith('power.yaml')) return text
   assert.ok(text.includes(from), from)

@@ -1,4 +1,4 @@
-// Patterns match what `conformance/patterns.json` says, as in all languages.
+// Patterns match as `conformance/patterns.json` specifies, in all languages.
 
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'

@@ -1,4 +1,5 @@
-// The session scripts of level `peer`: what a whole client or robot must do over time, as data that all implementations share.
+// The session scripts of level `peer`: the behaviour of a whole client or robot over time, as data for all
+// implementations.
 
 import assert from 'node:assert/strict'
 import { readdirSync, readFileSync } from 'node:fs'
@@ -8,7 +9,7 @@ import { Connection, Refusal, dial, robotWithoutPorts } from 'fc-protocol/runtim
 import { holds, root } from './support.mjs'
 import { FakePlatform, KINDS, Raw, bodyOf, echo, go, moved, pipe, results, service, settle, toy } from './toy.mjs'
 
-/** Later than any script goes. */
+/** Longer than any script lasts. */
 const PATIENT = 365 * 24 * 60 * 60 * 1000
 
 class Run {
@@ -17,7 +18,7 @@ class Run {
   requests = new Map()
   arrived = new Map()
   handlers = new Map()
-  /** What has come of a step beside frames. */
+  /** Events of a step other than frames. */
   events = []
 
   constructor(given) {
@@ -72,7 +73,7 @@ class Run {
     else assert.notEqual(this.robot.serve(theirs), null)
   }
 
-  /** The name of the last frame with this code and id that was sent to the peer. */
+  /** Returns the name of the last frame with this code and id that was sent to the peer. */
   nameOf(code, id, body) {
     const found = [...this.arrived]
       .reverse()
@@ -134,7 +135,7 @@ class Run {
     return got
   }
 
-  /** A request of the peer. Its number has to be in its body, so that it is known again. */
+  /** Sends a request of the peer. Its body has a number, to recognise it. */
   request(name, code) {
     const number = this.requests.size
     assert.ok(!this.requests.has(name), name)
@@ -203,7 +204,7 @@ class Run {
 
   take() {
     const [receiver] = this.receivers
-    // A receiver looks whether there is a report: if none is there, it does not wait.
+    // A receiver without a report does not wait.
     if (receiver.queue.length === 0) return
     void receiver.next().then(({ value }) => this.events.push({ hands_on: this.nameOf(value.code, value.id) }))
   }
@@ -246,7 +247,7 @@ class Run {
     return { sends: { as: request.name, id: id.id } }
   }
 
-  /** An expected event with the id of its request. */
+  /** Returns an expected event with the id of its request. */
   filled(event) {
     const [verb] = Object.keys(event)
     if (verb !== 'sends' && verb !== 'again') return event

@@ -1,4 +1,4 @@
-// What the spec says of values as states, of fields under a condition, and of what is kept out of texts.
+// States, fields under a condition, and sensitive values.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'

@@ -7,7 +7,7 @@ import { nodeAlgorithms } from 'fc-protocol/node'
 import { compile, emptyFolder, load, repository } from './packages.mjs'
 import { root, vectors, vectorsIn } from './support.mjs'
 
-/** A protocol; `from` imports one of its compiled modules. */
+/** Returns a protocol; `from` imports one of its compiled modules. */
 async function protocolOf(name, vectors, from) {
   const { protocol } = await from('generated/protocol.js')
   return {
@@ -29,7 +29,7 @@ function other(name) {
   return protocolOf(name, vectorsIn(path.join(source, 'vectors')), (file) => load(folder, file))
 }
 
-/** All of them. */
+/** All protocols. */
 export const protocols = [
   await protocolOf('the spec', vectors, (file) => import(path.join(root, 'dist', file))),
   await other('meter'),

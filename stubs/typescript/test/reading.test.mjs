@@ -1,4 +1,4 @@
-// What is read from bytes without detours is what a slow and plain reader makes of it.
+// The fast reader of bytes gives the same result as a slow and plain reader.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -116,7 +116,7 @@ test('what is no UTF-8 is refused wherever it stands', () => {
     '?',
     '{"whole":"?"}',
   ]
-  // Too short, too long, half of a pair, beyond Unicode, no beginning.
+  // Too short, overlong, half of a surrogate pair, beyond Unicode, no first byte.
   for (const wrong of [[0xe9, 0x97], [0xc0, 0xaf], [0xed, 0xa0, 0x80], [0xf4, 0x90, 0x80, 0x80], [0x80]]) {
     for (const place of places) {
       for (const padding of ['', 'x'.repeat(70)]) {
@@ -163,7 +163,7 @@ test('values_count_while_they_are_read_and_end_it_at_the_limit', () => {
   const choice = { is: 'choice', name: 'Any', forms: { All: () => struct } }
   const holder = { is: 'struct', name: 'Holder', fields: { one: { key: 'one', type: () => choice, optional: true } } }
   const many = '"a":[[1,2]],'
-  // Behind the limit comes a character that is no JSON: a reader that goes so far reports it.
+  // After the limit comes an invalid character: a reader that goes that far reports it.
   for (const [type, text] of [
     [struct, `{${many.repeat(30)}?`],
     [struct, `{"open":{${many.repeat(30)}?`],

@@ -1,4 +1,4 @@
-// The programs of the readmes, type-checked as a user's strict project would and run: they print what stands below them.
+// The programs of the READMEs, type-checked as in a user's strict project, and run: they print the text below them.
 
 import assert from 'node:assert/strict'
 import { execFileSync } from 'node:child_process'
@@ -7,7 +7,7 @@ import path from 'node:path'
 import { test } from 'node:test'
 import { root } from './support.mjs'
 
-/** Each program with its output. */
+/** Returns each program with its output. */
 const programs = (text) =>
   [...text.matchAll(/\n```ts\n([^]*?)\n```\n+```text\n([^]*?\n)```\n/g)].map(([, code, output]) => ({ code, output }))
 
@@ -17,7 +17,7 @@ for (const name of ['README.md', 'README.zh-CN.md']) {
     const all = programs(text)
     assert.ok(all.length > 0)
     assert.equal(text.split('```ts\n').length - 1, all.length, 'a program without its output')
-    // Inside the package, so that its own name leads to it.
+    // Inside the package, so that the package's name resolves.
     const folder = path.join(root, 'dist/readme', name)
     rmSync(folder, { recursive: true, force: true })
     mkdirSync(folder, { recursive: true })

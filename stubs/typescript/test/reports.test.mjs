@@ -1,4 +1,4 @@
-// Reports on their way to an app, and what a command has set off, followed to its end.
+// Reports to an app, and processes followed to their end.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -82,7 +82,7 @@ test('a report that comes late of its interval is counted', async () => {
   assert.equal((await reports.next()).value.case, 'Beat')
 })
 
-/** A drive that has been answered. */
+/** Starts a drive and gets its response. */
 async function begun(config) {
   const all = await client(config)
   const call = all.connection.call(drive, { metres: 5 }).follow()
@@ -114,7 +114,7 @@ test('what a command sets off is followed to its end, from before the answer on'
     ['going', 0],
     ['ended', 2],
   ])
-  // One came back to where it had been, and one jumped.
+  // One returned to an earlier state, and one skipped states.
   assert.equal(connection.counters().reportsOutOfOrder, 2)
   raw.take()
   await raw.send(report(progress.code, 99), { drive: 7, state: 1 })

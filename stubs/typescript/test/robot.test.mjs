@@ -1,4 +1,4 @@
-// The robot's side: requests, handlers, reports and streams, whatever an app does.
+// The robot's side: requests, handlers, reports and streams, for any behaviour of an app.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -14,7 +14,7 @@ const ends = (promise) =>
     (error) => error,
   )
 
-/** A handler that is ended by hand. */
+/** Returns a handler that the test ends. */
 function held() {
   const open = []
   const handler = (request, context) =>

@@ -1,4 +1,4 @@
-// The samples of the documentation do as they say: every command is called, every report pushed and taken.
+// The samples of the documentation call every command, push every report and receive it.
 
 import { test } from 'node:test'
 import { Fc } from 'fc-protocol'

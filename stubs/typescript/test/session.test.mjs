@@ -1,4 +1,4 @@
-// The session scripts of level `session`: what must be done over time, as data that all implementations share.
+// The session scripts of level `session`: behaviour over time, as data for all implementations.
 
 import assert from 'node:assert/strict'
 import { readdirSync, readFileSync } from 'node:fs'
@@ -8,7 +8,7 @@ import { Session } from 'fc-protocol/runtime'
 import { holds, root } from './support.mjs'
 
 const KINDS = { stream: 0, command: 1, report: 3 }
-/** Steps and keys that a runner of this level has to know. */
+/** Steps and keys that a runner of this level must know. */
 const VERBS = ['call', 'report', 'receive', 'advance', 'lose', 'reconnect', 'handed_on', 'cancel', 'repeat']
 
 class Run {
@@ -54,7 +54,7 @@ class Run {
     }
   }
 
-  /** An expected event with the id of its request. */
+  /** Returns an expected event with the id of its request. */
   filled(event) {
     const [verb] = Object.keys(event)
     if (verb !== 'sends' && verb !== 'again') return event

@@ -1,4 +1,4 @@
-// Settings and call options out of range are refused by name, before anything begins.
+// Settings and call options out of range are refused by name, before anything starts.
 
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
@@ -9,7 +9,7 @@ import { dial, dialLater, serveRobot } from 'fc-protocol/runtime'
 import { root } from './support.mjs'
 import { FakePlatform, client, echo, moved, pictures, robot, service, settle, toy } from './toy.mjs'
 
-/** The numbers of an interface, read from its declaration, so that a new one is tested as well. */
+/** Returns the numbers of an interface, read from its declaration, so that a new one is tested as well. */
 function numbersOf(file, name) {
   const declarations = readFileSync(path.join(root, 'dist/src', file), 'utf8')
   const [, body] = new RegExp(`interface ${name} \\{([^]*?)\n\\}`).exec(declarations)
@@ -28,12 +28,12 @@ const CLIENT = [
 const SERVER = [...plain(numbersOf('server/config.d.ts', 'ServerConfig')), ...shared]
 const CALL = plain(numbersOf('client/config.d.ts', 'CallOptions'))
 
-/** Where `null` means that there is no limit, or nothing. */
+/** Settings where `null` means no limit, or none. */
 const NULLABLE = ['keepalive', 'maxAge', 'idleTimeout', 'reconnect.attempts']
 
 const NO_NUMBERS = [Number.NaN, -1, Number.POSITIVE_INFINITY, '5', '', true, {}, 5n]
 
-/** Ends of a promise, or of a call that throws. */
+/** Returns the result or the error of a promise, or of a call that throws. */
 const ends = async (begin) => {
   try {
     return await begin()

@@ -1,4 +1,4 @@
-// What several tests share: the package with the algorithms of Node.js, and the golden vectors.
+// Shared by several tests: the package with the algorithms of Node.js, and the golden vectors.
 
 import assert from 'node:assert/strict'
 import { appendFileSync, readdirSync, readFileSync } from 'node:fs'
@@ -8,7 +8,7 @@ import { protocol } from 'fc-protocol/codec'
 import { nodeAlgorithms } from 'fc-protocol/node'
 import { Framing } from 'fc-protocol/runtime'
 
-/** The package. */
+/** Folder of the package. */
 export const root = fileURLToPath(new URL('..', import.meta.url))
 
 export const codec = { protocol, algorithms: nodeAlgorithms }
@@ -16,8 +16,8 @@ export const codec = { protocol, algorithms: nodeAlgorithms }
 const held = new Map()
 
 /**
- * A case of a kind of `conformance/README.md` has held. At its end a test file says how many: a line `KIND NUMBER` behind what is in
- * the file that `FC_CONFORMANCE` names, if it names one.
+ * Counts a passed case of a kind in `conformance/README.md`. At its end, a test file appends a line `KIND NUMBER` to
+ * the file that `FC_CONFORMANCE` names.
  */
 export const holds = (kind) => held.set(kind, (held.get(kind) ?? 0) + 1)
 
@@ -26,20 +26,20 @@ process.on('exit', () => {
   if (file) appendFileSync(file, [...held].map(([kind, number]) => `${kind} ${number}\n`).join(''))
 })
 
-/** Frames of a codec's protocol, however well they are compressed. */
+/** Returns a framing for a codec's protocol that accepts any compression ratio. */
 export function framingOf({ protocol, algorithms }) {
   const { frameBytes, inflatedBytes } = protocol.limits
   return new Framing(protocol, { frameBytes, inflatedBytes }, algorithms)
 }
 
-/** The files of vectors in a folder: `{ file, operation, code, accepted, rejected }`. */
+/** Returns the files of vectors in a folder: `{ file, operation, code, accepted, rejected }`. */
 export const vectorsIn = (folder) =>
   readdirSync(folder)
     .filter((name) => name.endsWith('.json'))
     .sort()
     .map((name) => ({ file: name, ...JSON.parse(readFileSync(path.join(folder, name), 'utf8')) }))
 
-/** Every vector file of the package's own protocol. */
+/** All vector files of the package's protocol. */
 export const vectors = vectorsIn(path.join(root, '../../fc-generated/vectors'))
 
 export const bytesOf = (hex) => Uint8Array.from(Buffer.from(hex, 'hex'))
@@ -52,7 +52,7 @@ export const bare = { ...protocol, envelope: { request: { struct: nothing }, res
 /** The type `object` of `bodies.json`. */
 const inner = () => ({ is: 'struct', name: 'Inner', fields: { value: { key: 'value', type: 'i32', optional: true } } })
 
-/** An operation whose request has one optional key of a type, as `bodies.json` asks for. */
+/** Returns an operation whose request has one optional key of a type, for `bodies.json`. */
 export function ofOneKey(name, details = {}) {
   const type = name === 'object' ? inner : String(name).startsWith('timestamp') ? 'i64' : name
   const value = { key: 'value', type, optional: true, ...details }
@@ -60,8 +60,8 @@ export function ofOneKey(name, details = {}) {
 }
 
 /**
- * That samples print each request and answer of so many commands, each acknowledgement and taking of so many reports, and the sending
- * of so many streams. Whether their frames arrive before the app leaves is open.
+ * Asserts the output of samples. They print each request and response of the commands, each acknowledgement and receipt
+ * of the reports, and the sending of the streams. The frames may or may not arrive before the app leaves.
  */
 export async function assertSampled(context, run, commands, reports, streams) {
   const { mock } = context.mock.method(console, 'log', () => {})

@@ -21,7 +21,7 @@ async function both(context, robot, { client = {}, server = {} } = {}) {
   return { server: serving, app, ports }
 }
 
-/** A proxy in front of a port, whose connections a test can cut. */
+/** Returns a proxy in front of a port, whose connections a test can cut. */
 async function proxy(context, port) {
   const sockets = new Set()
   const listener = net.createServer((near) => {
@@ -83,7 +83,7 @@ test('a command is followed over a loss in the middle', async (context) => {
   const seen = []
   for await (const next of following) {
     seen.push(next.is)
-    // The robot knows the app again once it has been asked something.
+    // The robot recognises the app again after a request.
     if (next.is === 'resumed') void app.getRechargeStatus({}).then(() => reporter.rechargeProgress(status(1, 1)))
   }
   assert.deepEqual(seen, ['going', 'interrupted', 'resumed', 'failed'])

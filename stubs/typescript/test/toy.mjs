@@ -1,4 +1,4 @@
-// A small protocol for tests of what runs over time, a clock that the test holds, and pipes in place of sockets.
+// A small protocol for tests of behaviour over time, with a virtual clock, and pipes in place of sockets.
 
 import { setImmediate as turn } from 'node:timers/promises'
 import { nodeAlgorithms } from 'fc-protocol/node'
@@ -159,7 +159,7 @@ export const service = {
   unknown: 'unknown',
 }
 
-/** A clock that moves when it is told to. */
+/** A clock that the test moves. */
 export class FakeClock {
   time = 1000
   timers = new Set()
@@ -178,7 +178,7 @@ export class FakeClock {
     return () => this.timers.delete(timer)
   }
 
-  /** Moves on at once: what is due meanwhile is late. */
+  /** Moves the clock in one step: due timers fire late. */
   async advance(milliseconds) {
     this.time += milliseconds
     for (;;) {
@@ -191,12 +191,12 @@ export class FakeClock {
   }
 }
 
-/** Lets all go on as far as it can without time. */
+/** Lets all tasks run as far as possible without time passing. */
 export async function settle() {
   for (let turns = 0; turns < 30; turns++) await turn()
 }
 
-/** One end of a pipe. `room` is how many bytes it takes before the other end reads. */
+/** One end of a pipe. It takes `room` bytes before the other end reads. */
 class End {
   remote = '127.0.0.1'
   chunks = []
@@ -259,7 +259,7 @@ class End {
   }
 }
 
-/** Both ends of a pipe. */
+/** Returns both ends of a pipe. */
 export function pipe(room = 1 << 20) {
   const [one, two] = [new End(room), new End(room)]
   one.other = two
@@ -270,7 +270,7 @@ export function pipe(room = 1 << 20) {
 export const framing = new Framing(wire.frame, wire.defaults.limits, nodeAlgorithms)
 export const KINDS = { stream: 0, command: 1, report: 3 }
 
-/** The hand-held end of a connection: sends frames, and sees those that are sent. */
+/** The test's end of a connection: sends frames, and records received ones. */
 export class Raw {
   got = []
   isClosed = false
@@ -289,12 +289,12 @@ export class Raw {
         for (let next = this.stream.next(); next; next = next.fatal ? null : this.stream.next()) this.got.push(next)
       }
     } catch {
-      // It is closed, too.
+      // Closes its end as well.
     }
     this.isClosed = true
   }
 
-  /** The frames that have come since this was last asked. */
+  /** Returns the frames received since the last call. */
   take() {
     return this.got.splice(0)
   }
@@ -313,16 +313,16 @@ export class Raw {
     await this.end.write(bytes).catch(() => {})
   }
 
-  /** Answers a frame. */
+  /** Responds to a frame. */
   answer({ id }, body = { result: 0 }) {
     return this.send({ ...id, response: true }, body)
   }
 }
 
-/** What a frame says. */
+/** Returns the body of a frame. */
 export const bodyOf = ({ data }) => JSON.parse(new TextDecoder().decode(data))
 
-/** A platform whose connections are pipes: each attempt waits until the test gives it one. */
+/** A platform whose connections are pipes: each attempt to connect waits until the test gives it one. */
 export class FakePlatform {
   algorithms = nodeAlgorithms
   clock = new FakeClock()
@@ -344,13 +344,13 @@ export class FakePlatform {
     }
   }
 
-  /** The next attempt to connect comes to this. */
+  /** Gives this end to the next attempt to connect. */
   give(end) {
     this.pipes.push(end)
     this.match()
   }
 
-  /** The next attempt connects; the other end of it. */
+  /** Lets the next attempt connect. Returns the other end. */
   join(room) {
     const [theirs, ours] = pipe(room)
     this.give(theirs)
@@ -358,7 +358,7 @@ export class FakePlatform {
   }
 }
 
-/** A client over a pipe, whose robot is the test. */
+/** Returns a client over a pipe; the test is its robot. */
 export async function client(config = {}) {
   const platform = new FakePlatform()
   const raw = platform.join()
@@ -368,7 +368,7 @@ export async function client(config = {}) {
   return { platform, clock: platform.clock, raw, connection }
 }
 
-/** A client that connects in the background. */
+/** Returns a client that connects in the background. */
 export function lazyClient(config = {}) {
   const platform = new FakePlatform()
   return {
@@ -378,7 +378,7 @@ export function lazyClient(config = {}) {
   }
 }
 
-/** A robot, whose app is the test. */
+/** Returns a robot; the test is its app. */
 export function robot(methods, config = {}, algorithms = nodeAlgorithms) {
   const platform = Object.assign(new FakePlatform(), { algorithms })
   const server = robotWithoutPorts(toy, service, platform, methods, { firstId: 500, ...config })

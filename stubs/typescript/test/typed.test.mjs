@@ -1,4 +1,5 @@
-// Bodies at the edges of JSON through typed messages: read as the schema says, refused by name, and written again.
+// Bodies at the edges of JSON through typed messages: decoded with the schema and encoded again, or refused with the
+// error's name.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -7,7 +8,7 @@ import { bare, bytesOf, holds, ofOneKey, vectors } from './support.mjs'
 
 const allowance = { depth: bare.limits.jsonDepth, values: 1 << 20 }
 
-/** The tokens of a JSON text, with strings and floats by value: they may be spelled otherwise. */
+/** Returns the tokens of a JSON text, with strings and floats by value: their spelling may differ. */
 function meaning(text, type) {
   const plain = (token) => {
     if (token.startsWith('"')) return JSON.parse(token)

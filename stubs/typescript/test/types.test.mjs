@@ -1,4 +1,4 @@
-// Types and their schemas: the compiler refuses those that differ, and what it takes is read and written.
+// Types and their schemas: the compiler refuses differences, and accepted ones are read and written.
 
 import { execFileSync } from 'node:child_process'
 import { mkdirSync, rmSync, writeFileSync } from 'node:fs'
@@ -20,7 +20,7 @@ test('a schema that is none of its type is refused by the compiler', () => {
   execFileSync(process.execPath, [path.join(folder, 'out/messages.js')], { stdio: 'inherit' })
 })
 
-/** A program for browsers, which names every module of the package that browsers have. */
+/** A program for browsers, which imports every module that browsers can use. */
 const BROWSER = `
 import { CallError, Client } from 'fc-protocol'
 import { protocol } from 'fc-protocol/codec'
@@ -44,7 +44,7 @@ for (const lib of ['ES2018', 'ES2022', 'ESNext']) {
     ['NodeNext', 'NodeNext'],
   ]) {
     test(`declarations_need_no_more_than_${lib}_and_dom_in_${module}`, () => {
-      // Inside the package, so that its own name leads to it.
+      // Inside the package, so that the package's name resolves.
       const folder = path.join(root, 'dist/types', `browser-${lib}-${module}`)
       rmSync(folder, { recursive: true, force: true })
       mkdirSync(folder, { recursive: true })

@@ -1,4 +1,4 @@
-// The golden vectors, all of them: what is taken, what is refused and by which name, and what is made again.
+// All golden vectors: frames to accept, frames to refuse with the error's name, and frames to encode again.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -6,7 +6,7 @@ import { decodeFrame, encodeFrame, headerValue, operationOf, readBody, sideOf } 
 import { protocols } from './protocols.mjs'
 import { bare, bytesOf, ofOneKey, vectors } from './support.mjs'
 
-/** What the package makes of a frame: the first fault, and all it found on the way. */
+/** Returns the package's result for a frame: the decoded parts, and the first error. */
 function judge(codec, bytes) {
   const { protocol } = codec
   const decoded = decodeFrame(codec, bytes)
@@ -42,7 +42,7 @@ for (const { name: of, codec, vectors } of protocols) {
   })
 
   for (const { file, operation: name, accepted: good = [], rejected: bad = [] } of vectors) {
-    // They carry no frame, and have a test of their own.
+    // They contain no frame, and have a separate test.
     if (file === 'bodies.json') continue
     test(`${of}: ${file}`, () => {
       const operation = protocol.operations.find((candidate) => candidate.name === name) ?? null
@@ -56,7 +56,7 @@ for (const { name: of, codec, vectors } of protocols) {
         }
         const bytes = bytesOf(vector.frame)
         const { decoded, body: read, number, side, fault: found } = judge(codec, bytes)
-        // Vectors of no operation are about frames alone: an empty data area is a sound frame.
+        // Vectors without an operation test only frames: an empty data area is valid.
         const body = operation ? read : null
         for (const [role, value] of Object.entries(vector.header ?? {})) {
           if (typeof value === 'number' && number(role) !== null) assert.equal(number(role), value, `${where} ${role}`)
@@ -70,9 +70,9 @@ for (const { name: of, codec, vectors } of protocols) {
         }
         if ((number('encoding') ?? undefined) !== protocol.encodings.find(({ role }) => role === 'plain')?.value)
           continue
-        // A quirk is a frame that nobody should send: it is taken, but made anew it is regular.
+        // A quirk is an irregular frame that is accepted. Encoding it again gives a regular one.
         if (vector.name.startsWith('quirk')) continue
-        // So is a header field that is always sent at its fixed value.
+        // The same holds for a header field that is always sent with its fixed value.
         if (decoded.fields.some(({ field, value }) => field.role === 'status' && value !== field.value)) continue
         const again = encodeFrame(codec, {
           response: side === 'response',

@@ -1,4 +1,4 @@
-// What a browser is given: MD5 and gzip without dependencies, and connections over a WebSocket.
+// The parts for browsers: MD5 and gzip without dependencies, and connections over a WebSocket.
 
 import assert from 'node:assert/strict'
 import { createHash } from 'node:crypto'
@@ -101,7 +101,7 @@ class Socket {
   }
 }
 
-/** Connections over WebSockets that are pipes, as long as a test runs. */
+/** Makes connections over WebSockets that are pipes, while a test runs. */
 function useSockets(context) {
   const before = globalThis.WebSocket
   globalThis.WebSocket = Socket

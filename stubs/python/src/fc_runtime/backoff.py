@@ -1,4 +1,4 @@
-"""When to try to connect again."""
+"""Waits between attempts to connect."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ class Tries:
     """Attempts to connect, and the waits between them."""
 
     def __init__(self, backoff: Backoff | None) -> None:
-        """As configured; `None` gives up at the first failure or loss."""
+        """Creates the waits as configured; `None` gives up at the first failure or loss."""
         self._backoff: Final = backoff
         self._failed = self._waits = 0
         self._is_first = True
 
     def next(self) -> float | None:
-        """How long to wait before the next attempt; `None` if there is to be none."""
+        """Returns the seconds to wait before the next attempt; `None` to give up."""
         if self._is_first:
             self._is_first = False
             return 0.0
@@ -31,11 +31,11 @@ class Tries:
         return wait * (1 - 0.25 * random.random())  # noqa: S311 - only to part apps
 
     def failed(self) -> None:
-        """The attempt has failed."""
+        """Notes a failed attempt."""
         self._failed += 1
 
     def connected(self, *, is_used: bool) -> None:
-        """There was a connection, and it is lost; waits begin again only if it was of use."""
+        """Notes a connection that was made and lost. The waits start again only if it was used."""
         self._failed = 0
         self._is_first = False
         if is_used:

@@ -1,7 +1,7 @@
-"""The client without `async`, for tools and tests: what it does waits on the thread that asks for it.
+"""The client without `async`, for tools and tests: each method blocks the calling thread.
 
-A connection has a thread of its own, with an event loop in which the asyncio client runs: reports are acknowledged, and
-a lost connection is made again, also while nobody calls anything.
+Each connection runs the asyncio client in a separate thread with an event loop. Reports are acknowledged and a lost
+connection is made again even while no method runs.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ T = TypeVar("T")
 
 
 class _Thread:
-    """An event loop with a thread of its own."""
+    """A thread with an event loop."""
 
     def __init__(self, name: str) -> None:
         self.loop: Final = asyncio.new_event_loop()
@@ -54,7 +54,7 @@ class _Thread:
             self.loop.close()
 
     def wait(self, work: Coroutine[Any, Any, T]) -> T:
-        """Do something over there, and wait for it. Ctrl-C cancels it."""
+        """Runs work on the thread and waits for it. Ctrl-C cancels it."""
         if threading.current_thread() is self._thread or self.loop.is_closed():
             work.close()
             if self.loop.is_closed():
@@ -68,19 +68,19 @@ class _Thread:
             raise
 
     def end(self) -> None:
-        """End the thread."""
+        """Ends the thread."""
         self.loop.call_soon_threadsafe(self.loop.stop)
         self._thread.join()
 
 
 class SyncCalls:
-    """What calls go through: a client without its reports. Its subclasses have one method per command."""
+    """The base of clients for calls only. Its subclasses have one method per command."""
 
     protocol: ClassVar[Protocol]
     """The protocol that it speaks."""
 
     def __init__(self, config: ClientConfig | None = None) -> None:
-        """Connect to a robot; what `config` does not set has the default of the spec. Raises `ConnectError`."""
+        """Connects to a robot. Settings absent from `config` have the spec's defaults. Raises `ConnectError`."""
         self._thread: Final = _Thread(f"{self.protocol.name} client")
         try:
             self.connection: Final[Connection] = self._thread.wait(self._connect(config))
@@ -94,7 +94,7 @@ class SyncCalls:
         return connection
 
     def wait(self, work: Coroutine[Any, Any, T]) -> T:
-        """Wait for something that has `async` methods alone, such as `connection.closed()` and the data port."""
+        """Waits for work that only has `async` methods, such as `connection.closed()` and the data port."""
         return self._thread.wait(work)
 
     def _call(self, command: Command[Q, R], request: Message | None, timeout: float | None, repeat: bool | None) -> R:
@@ -120,50 +120,50 @@ class SyncClient(SyncCalls, Generic[A]):
 
     @classmethod
     def connect(cls: type[C], config: ClientConfig | None = None) -> C:
-        """Connect to a robot; what `config` does not set has the default of the spec. Raises `ConnectError`."""
+        """Connects to a robot. Settings absent from `config` have the spec's defaults. Raises `ConnectError`."""
         return cls(config)
 
     @property
     def state(self) -> ConnectionState:
-        """Whether there is a connection at this moment, and why not."""
+        """The present state of the connection, with the reason if there is none."""
         return self.connection.state
 
     @property
     def counters(self) -> ClientCounters:
-        """What has happened since the client was made."""
+        """Counters since the client was made."""
         return self.connection.counters
 
     def reports(self) -> SyncReports[A]:
-        """All reports received from now on. While there is no receiver, no report is acknowledged."""
+        """All reports received from now on. Without a receiver, reports are not acknowledged."""
         return SyncReports(self)
 
     def close(self) -> None:
-        """Close the connection for good, and end its thread; calls in flight end as lost."""
+        """Closes the connection for good, and ends its thread. Calls in flight end as lost."""
         if not self._thread.loop.is_closed():
             self._thread.wait(self._close())
             self._thread.end()
 
     async def _close(self) -> None:
         self.connection.close()
-        # Those who wait are told before the thread ends.
+        # Waiting tasks get the loss before the thread ends.
         await self.connection.gone()
 
     def __enter__(self: C) -> C:
-        """Itself."""
+        """Returns itself."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close the connection for good."""
+        """Closes the connection for good."""
         self.close()
 
 
 class SyncReports(Generic[A]):
-    """Reports in the order in which they came; go through them with `for`."""
+    """Reports in their order of arrival, for a `for` loop."""
 
     def __init__(self, client: SyncCalls) -> None:
-        """Of a client, from now on."""
+        """Creates a receiver for the reports from now on."""
         self._client: Final = client
         self._reports: Final[client_module.Reports[A]] = client.wait(self._open())
 
@@ -172,38 +172,38 @@ class SyncReports(Generic[A]):
 
     @property
     def missed(self) -> int:
-        """How many it has missed so far, because its queue was full while another receiver took them."""
+        """Number of reports missed so far: this queue was full while another receiver took them."""
         return self._reports.missed
 
     def recv(self, timeout: float | None = None) -> A | None:
-        """The next report; `None` after the end. Raises `TimeoutError` if none comes within the timeout."""
+        """Returns the next report; `None` after the end. Raises `TimeoutError` if none comes within the timeout."""
         return self._client.wait(_within(self._reports.recv(), timeout))
 
     def close(self) -> None:
-        """Receive no more."""
+        """Ends receiving."""
         self._client.wait(self._close())
 
     async def _close(self) -> None:
         self._reports.close()
 
     def __iter__(self) -> Iterator[A]:
-        """The reports, to the end of the connection."""
+        """Yields the reports until the connection ends."""
         while (report := self.recv()) is not None:
             yield report
 
     def __enter__(self) -> SyncReports[A]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Receive no more."""
+        """Ends receiving."""
         self.close()
 
 
 class SyncFollowing(Generic[R, P]):
-    """A command that has been answered, and the reports that it sets off; go through it with `for`."""
+    """The response to a command and the reports that it sets off, for a `for` loop."""
 
     def __init__(self, client: SyncCalls, following: Following[R, P]) -> None:
         """Made by a client's method."""
@@ -212,38 +212,38 @@ class SyncFollowing(Generic[R, P]):
 
     @property
     def answer(self) -> R:
-        """What the robot has answered to the command."""
+        """The robot's response to the command."""
         return self._following.answer
 
     def recv(self, timeout: float | None = None) -> Followed[P] | None:
-        """What comes next; `None` after the end. Raises `FollowError`, and `TimeoutError` if nothing comes in time."""
+        """Returns the next event; `None` after the end. Raises `FollowError`; `TimeoutError` if none comes in time."""
         return self._client.wait(_within(self._following.recv(), timeout))
 
     def close(self) -> None:
-        """Follow no further."""
+        """Ends following."""
         self._client.wait(self._close())
 
     async def _close(self) -> None:
         self._following.close()
 
     def __iter__(self) -> Iterator[Followed[P]]:
-        """What comes, to the end."""
+        """Yields the events to the end."""
         while (event := self.recv()) is not None:
             yield event
 
     def __enter__(self) -> SyncFollowing[R, P]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Follow no further."""
+        """Ends following."""
         self.close()
 
 
 async def _within(work: Coroutine[Any, Any, T], timeout: float | None) -> T:
-    # Another class before Python 3.11.
+    # `asyncio` has a separate class before Python 3.11.
     try:
         return await within(timeout, work)
     except asyncio.TimeoutError:

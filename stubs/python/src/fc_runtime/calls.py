@@ -1,4 +1,4 @@
-"""What can go wrong with connecting and with calls, and why there is no connection."""
+"""Errors of connecting and of calls, and reasons for having no connection."""
 
 from __future__ import annotations
 
@@ -14,42 +14,42 @@ E = TypeVar("E", bound="Result")
 
 
 class LossKind(str, Enum):
-    """Why there is no connection."""
+    """Reasons for having no connection."""
 
     NOT_YET = "not_yet"
     """The first connection is still being made."""
     CLOSED = "closed_by_robot"
-    """The robot has closed the connection."""
+    """The robot closed the connection."""
     UNHEARD = "closed_unheard"
-    """The robot has closed the connection before it sent anything."""
+    """The robot closed the connection before it sent anything."""
     BROKEN = "broken"
     """The network broke the connection."""
     FRAME = "frame"
-    """The robot's bytes are no frames."""
+    """The robot's bytes cannot be split into frames."""
     STALLED = "stalled"
-    """A frame began and did not go on."""
+    """A frame began and did not continue."""
     UNREAD = "unread"
     """The robot does not read."""
     UNREACHABLE = "unreachable"
-    """No new connection."""
+    """The network refused a new connection."""
     CONNECT_TIMEOUT = "connect_timeout"
     """No new connection in time."""
     RENEWED = "renewed"
-    """The command connection was made again, and the data connection with it."""
+    """The command connection was made again, so the data connection is made again as well."""
     HERE = "closed_here"
-    """The connection was closed by this side."""
+    """This side closed the connection."""
     ENDED = "ended"
     """The event loop of the connection has ended."""
 
 
 @dataclass(frozen=True, slots=True)
 class Loss:
-    """Why there is no connection, and what is known of it."""
+    """The reason for having no connection, with details."""
 
     kind: LossKind
-    """Why."""
+    """The reason."""
     detail: str = ""
-    """What is known of it."""
+    """Details, or an empty text."""
 
     @property
     def name(self) -> str:
@@ -62,76 +62,76 @@ class Loss:
 
 
 class ConnectError(OSError):
-    """A first connection that could not be made."""
+    """The error of a first connection that could not be made."""
 
     def __init__(self, address: str, loss: Loss) -> None:
-        """Says to where, and why not."""
+        """Creates the error for an address, with the reason."""
         super().__init__(f"cannot connect to {address}: {loss}")
         self.loss: Final = loss
-        """Why not."""
+        """The reason."""
 
 
 class Refusal(Exception):
-    """A result other than success. A handler raises it; of a call it is the `refusal` of `RefusedError`."""
+    """A result other than success. A handler raises it. For a call, it is the `refusal` of `RefusedError`."""
 
     def __init__(self, code: int, text: str) -> None:
-        """With a result code, and a text for people."""
+        """Creates a refusal with a result code, and a text for people."""
         super().__init__(f"refused with result {code}: {text}")
         self.code: Final = code
         """The result code."""
         self.text: Final = text
-        """The text beside it. Never rely on it."""
+        """The text of the result. Never rely on it."""
 
     def declared(self, errors: type[E]) -> E | None:
-        """Which of the errors that a command declares it is; `None` if none of them."""
+        """Returns the command's declared error with this code; `None` if it declares none."""
         return errors.of(self.code)
 
 
 class CallError(Exception):
-    """A call that has failed."""
+    """The error of a failed call."""
 
     name: ClassVar[str] = ""
-    """Its name, the same in every language."""
+    """Name of the error, the same in every language."""
 
     @property
     def loss(self) -> Loss | None:
-        """Why there was no connection (any more), if that is what ended the call."""
+        """Why there was no connection; `None` for other errors."""
         return None
 
     def declared(self, errors: type[E]) -> E | None:
-        """Which of the errors that the command declares the robot has answered with; `None` for anything else."""
+        """Returns the command's declared error that the robot responded with; `None` for any other."""
         return self.refusal.declared(errors) if isinstance(self, RefusedError) else None
 
 
 class RefusedError(CallError):
-    """The robot answered with a result other than success."""
+    """The robot responded with a result other than success."""
 
     name: ClassVar[str] = "refused"
 
     def __init__(self, refusal: Refusal) -> None:
-        """With what the robot has answered."""
+        """Creates the error from the robot's refusal."""
         super().__init__(str(refusal))
         self.refusal: Final = refusal
-        """What the robot has answered."""
+        """The robot's refusal."""
 
 
 class CallTimeoutError(CallError, TimeoutError):
-    """No response in time over a connection that is still there; the robot may have acted."""
+    """No response in time over a working connection; the robot may have acted."""
 
     name: ClassVar[str] = "timeout"
 
     def __init__(self) -> None:
-        """Says so."""
+        """Creates the error."""
         super().__init__("no response in time; the robot may have acted")
 
 
 class _LossError(CallError):
-    """A call that has failed because there was no connection."""
+    """The error of a call that failed for lack of a connection."""
 
     _text: ClassVar[str] = ""
 
     def __init__(self, loss: Loss) -> None:
-        """With the reason."""
+        """Creates the error with the reason."""
         super().__init__(f"{self._text}: {loss}")
         self._loss: Final = loss
 
@@ -168,20 +168,20 @@ class BusyError(CallError):
     name: ClassVar[str] = "busy"
 
     def __init__(self) -> None:
-        """Says so."""
+        """Creates the error."""
         super().__init__("too many calls are in flight; wait for one, or raise `in_flight`")
 
 
 class InvalidRequestError(CallError):
-    """The request breaks one of its own constraints; nothing was sent."""
+    """The request breaks a constraint; nothing was sent."""
 
     name: ClassVar[str] = "invalid_request"
 
     def __init__(self, error: BodyError) -> None:
-        """With what is wrong."""
+        """Creates the error from the error in the request."""
         super().__init__(f"the request is invalid: {error}")
         self.error: Final = error
-        """What is wrong."""
+        """The error in the request."""
 
 
 class InvalidResponseError(CallError):
@@ -190,22 +190,22 @@ class InvalidResponseError(CallError):
     name: ClassVar[str] = "invalid_response"
 
     def __init__(self, error: BodyError) -> None:
-        """With what is wrong."""
+        """Creates the error from the error in the response."""
         super().__init__(f"the response is invalid: {error}")
         self.error: Final = error
-        """What is wrong."""
+        """The error in the response."""
 
 
 class FrameCallError(CallError):
-    """The request does not fit into a frame, or the answer came in a broken one."""
+    """The request does not fit into a frame, or the response came in an invalid one."""
 
     name: ClassVar[str] = "frame"
 
     def __init__(self, error: FrameError) -> None:
-        """With what is wrong."""
+        """Creates the error from the frame's error."""
         super().__init__(str(error))
         self.error: Final = error
-        """What is wrong."""
+        """The error of the frame."""
 
 
 CALL_ERRORS: Final[tuple[type[CallError], ...]] = (

@@ -1,4 +1,4 @@
-"""What the client of a protocol stands on: it has one method per command, and everything else from here."""
+"""The base of a generated client, which adds one method per command."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ P = TypeVar("P", bound="Message")
 
 
 class Calls:
-    """What calls go through: a client without its reports. Its subclasses have one method per command."""
+    """The base of clients for calls only. Its subclasses have one method per command."""
 
     def __init__(self, connection: Connection) -> None:
-        """Over a connection that there is; see `Client.connect` and `Client.connect_lazy`."""
+        """Creates a client over an existing connection; see `Client.connect` and `Client.connect_lazy`."""
         self.connection: Final = connection
-        """The underlying connection: raw commands."""
+        """The underlying connection, for raw commands."""
 
     def _followable(
         self,
@@ -44,7 +44,7 @@ class Calls:
         timeout: float | None,
         repeat: bool | None,
     ) -> Followable[R, P]:
-        """A call of a command that sets these reports off."""
+        """Calls a command that sets off these reports."""
         assert {one.name for one in reports} == {one.report.name for one in command.sets_off}
         return Followable(self.connection, command, request, timeout, repeat)
 
@@ -57,7 +57,7 @@ class Client(Calls, Generic[A]):
 
     @classmethod
     def connect(cls: type[C], config: ClientConfig | None = None) -> Connect[C]:
-        """Connect to a robot; what `config` does not set has the default of the spec.
+        """Connects to a robot. Settings absent from `config` have the spec's defaults.
 
         `client = await Client.connect(…)`, or `async with Client.connect(…) as client:`. Raises `ConnectError`.
         """
@@ -65,58 +65,58 @@ class Client(Calls, Generic[A]):
 
     @classmethod
     def connect_lazy(cls: type[C], config: ClientConfig | None = None) -> C:
-        """Connect in the background; calls made meanwhile wait for the connection within their timeout."""
+        """Connects in the background. Calls made meanwhile wait for the connection within their timeout."""
         connection = Connection(cls.protocol, config)
         connection.connect_lazy()
         return cls(connection)
 
     @property
     def state(self) -> ConnectionState:
-        """Whether there is a connection at this moment, and why not."""
+        """The present state of the connection, with the reason if there is none."""
         return self.connection.state
 
     @property
     def counters(self) -> ClientCounters:
-        """What has happened since the client was made."""
+        """Counters since the client was made."""
         return self.connection.counters
 
     def states(self) -> AsyncIterator[ConnectionState]:
-        """The present state of the connection, and each that it comes to; nothing after `Closed`."""
+        """Yields the present state of the connection, then each change; `Closed` is the last."""
         return self.connection.states()
 
     async def closed(self) -> Loss:
-        """Wait until the connection has ended for good, and say why."""
+        """Waits until the connection has ended for good. Returns the reason."""
         return await self.connection.closed()
 
     def close(self) -> None:
-        """Close the connection for good; calls in flight end as lost."""
+        """Closes the connection for good. Calls in flight end as lost."""
         self.connection.close()
 
     def reports(self) -> Reports[A]:
-        """All reports received from now on. Each receiver gets all of them and has a queue of its own.
+        """All reports received from now on. Each receiver has a separate queue and gets all of them.
 
-        While there is no receiver, no report is acknowledged.
+        Without a receiver, reports are not acknowledged.
         """
         return Reports(self.connection)
 
     def data(self) -> DataConnection:
-        """A connection to the data port: made in the background, made again after a loss, as long as this one."""
+        """Makes a connection to the data port in the background, and again after a loss. It ends with this one."""
         return DataConnection(self.connection)
 
     async def __aenter__(self: C) -> C:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close the connection for good."""
+        """Closes the connection for good."""
         self.close()
         await self.connection.gone()
 
 
 class Connect(Work[C], Generic[C]):
-    """A client on its way to being connected: a coroutine, that can also be entered with `async with`."""
+    """A client being connected: a coroutine that also works with `async with`."""
 
     def __init__(self, cls: type[C], config: ClientConfig | None) -> None:
         """Made by `Client.connect`."""
@@ -131,39 +131,40 @@ class Connect(Work[C], Generic[C]):
         return self._cls(connection)
 
     async def __aenter__(self) -> C:
-        """Connect."""
+        """Connects."""
         self._client = await self
         return self._client
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close the connection for good."""
+        """Closes the connection for good."""
         if self._client is not None:
             self._client.close()
             await self._client.connection.gone()
 
 
 class Reports(Generic[A]):
-    """Reports in the order in which they came; go through them with `async for`.
+    """Reports in their order of arrival, for `async for`.
 
-    Each is acknowledged when at least one receiver has it in its queue. A report that does not read as its type says is
-    refused, counted as `reports_invalid`, and never comes out here. To receive no more, `close()` it or enter it with
-    `async with`.
+    A report is acknowledged when at least one receiver has it in its queue. An invalid report is refused, counted in
+    `reports_invalid`, and not delivered. To end receiving, call `close()` or use `async with`.
     """
 
     def __init__(self, connection: Connection) -> None:
-        """Of a connection, from now on."""
+        """Creates a receiver for the reports from now on."""
         self._connection: Final = connection
         self._receiver: Final[Receiver] = connection.receiver()
 
     @property
     def missed(self) -> int:
-        """How many it has missed so far, because its queue was full while another receiver took them."""
+        """Number of reports missed so far: this queue was full while another receiver took them."""
         return self._receiver.missed
 
     async def recv(self) -> A | None:
-        """The next report, as the type of its code; `RawReport` where that is not known; `None` after the end."""
+        """Returns the next report with the type of its code, a `RawReport` for an unknown code, or `None` after the
+        end.
+        """
         while (event := await self._receiver.next()) is not None:
             if isinstance(event, RawReport):
                 known = self._connection.protocol.reports_by_code.get(event.code)
@@ -172,26 +173,26 @@ class Reports(Generic[A]):
         return None
 
     def close(self) -> None:
-        """Receive no more."""
+        """Ends receiving."""
         self._connection.leave(self._receiver)
 
     def __aiter__(self) -> Reports[A]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __anext__(self) -> A:
-        """The next report."""
+        """Returns the next report."""
         report = await self.recv()
         if report is None:
             raise StopAsyncIteration
         return report
 
     async def __aenter__(self) -> Reports[A]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Receive no more."""
+        """Ends receiving."""
         self.close()

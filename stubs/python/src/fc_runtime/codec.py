@@ -1,4 +1,4 @@
-"""Reading and writing messages, from what their annotations say of each field."""
+"""Reads and writes messages, from the annotations of their fields."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ M = TypeVar("M", bound=Message)
 
 
 class Slot:
-    """A field of a message, ready to be read and written."""
+    """A field of a message, prepared for reading and writing."""
 
     __slots__ = ("_empty_is_absent", "attribute", "check", "key", "opening", "optional", "read", "write")
 
     def __init__(self, attribute: str, key: Key, read: Read, write: Write, *, optional: bool) -> None:
-        """What is known of the field."""
+        """Creates the field."""
         self.attribute: Final = attribute
         self.key: Final = key
         self.read: Final = read
@@ -49,7 +49,7 @@ class Slot:
         self._empty_is_absent: Final = key.empty_is_absent
 
     def take(self, key: str, tree: Tree, values: dict[str, Any]) -> None:
-        """Reads the value of the field, which has come under this key."""
+        """Reads the value of the field that came under this key."""
         attribute = self.attribute
         if attribute in values:
             raise BodyError(BodyErrorKind.DUPLICATE_KEY, "the key comes twice").inside(key)
@@ -71,17 +71,17 @@ class Codec(Generic[M]):
         self.slots: Final = [_slot(cls, field.name) for field in fields(cls) if field.name != "extra"]  # type: ignore[arg-type]
         self.by_key: Final = {name: slot for slot in self.slots for name in (slot.key.name, *slot.key.also)}
         self.required: Final = [slot for slot in self.slots if not slot.optional]
-        # Raises `KeyError` for the first that is not there, in one step.
+        # Raises `KeyError` for the first missing field, in one step.
         self._demand: Final = itemgetter(*[slot.attribute for slot in self.required]) if self.required else None
         self.constrained: Final = [(slot, slot.check) for slot in self.slots if slot.check is not None]
 
     def has_required(self, entries: Entries) -> bool:
-        """Whether an object has the keys that such a message needs."""
+        """Returns `True` if an object has the keys that such a message needs."""
         there = {key for key, _ in entries}
         return all(slot.key.name in there or not there.isdisjoint(slot.key.also) for slot in self.required)
 
     def read(self, tree: Tree) -> M:
-        """The message that an object holds."""
+        """Returns the message in an object."""
         if not isinstance(tree, Entries):
             raise BodyError(BodyErrorKind.WRONG_TYPE, "an object is wanted")
         values: dict[str, Any] = {}
@@ -93,7 +93,7 @@ class Codec(Generic[M]):
                 check_key(key)
                 extra.append((key, value))
             elif value and slot.attribute not in values:
-                # As nearly all come; a call less for each.
+                # The usual case, with one function call less.
                 try:
                     values[slot.attribute] = slot.read(value)
                 except BodyError as error:
@@ -103,7 +103,7 @@ class Codec(Generic[M]):
         return self.finish(values, extra)
 
     def finish(self, values: dict[str, Any], extra: Entries) -> M:
-        """The message of the values of its fields, and of the keys that it does not know."""
+        """Returns the message with these field values and these unknown keys."""
         if self._demand is not None:
             try:
                 self._demand(values)
@@ -120,15 +120,15 @@ class Codec(Generic[M]):
         return self.cls(**values)
 
     def empty(self) -> M:
-        """A message without keys. Raises `BodyError` for the first that is required."""
+        """Returns a message without keys. Raises `BodyError` for the first required key."""
         return self.finish({}, Entries())
 
     def read_text(self, text: str | bytes) -> M:
-        """The message of a JSON text."""
+        """Returns the message in a JSON text."""
         return self.read(parse_body(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text))
 
     def write(self, message: M, out: list[str], separator: str = "{") -> str:
-        """Appends the keys of a message, each behind a separator. Gives that which the next key has."""
+        """Appends the keys of a message, each after a separator. Returns the separator of the next key."""
         if not isinstance(message, self.cls):
             raise _not_a(self.cls.__name__, message)
         for slot in self.slots:
@@ -159,7 +159,7 @@ class Codec(Generic[M]):
         out.append("}" if self.write(message, out) == "," else "{}")
 
     def write_text(self, message: M) -> str:
-        """The compact JSON text of a message."""
+        """Returns the compact JSON text of a message."""
         out: list[str] = []
         self.write_object(message, out)
         return to_bytes(out).decode("utf-8")
@@ -187,13 +187,13 @@ def _plain_values(values: Sequence[object]) -> list[object]:
 
 
 def check_key(key: str) -> None:
-    """Raises `BodyError` for a key with half a surrogate pair in it: none that a message knows has one."""
+    """Raises `BodyError` for a key with half of a surrogate pair, which no declared key has."""
     if has_lone_surrogate(key):
         raise BodyError(BodyErrorKind.LONE_SURROGATE, "half a surrogate pair is no text")
 
 
 def _not_a(wanted: str, found: object) -> BodyError:
-    """The error of an object that is not what is to be written."""
+    """Returns the error of an object with the wrong type."""
     name = found.__name__ if isinstance(found, type) else type(found).__name__
     return BodyError(BodyErrorKind.WRONG_TYPE, f"{wanted} is wanted, not {name}")
 
@@ -206,7 +206,7 @@ _CODECS: Final[dict[type[Message], Codec[Any]]] = {}
 
 
 def codec_of(cls: type[M]) -> Codec[M]:
-    """Reader and writer of a type of messages, made when it is first asked for."""
+    """Returns the reader and writer of a type of messages, created on first use."""
     codec = _CODECS.get(cls)
     if codec is None:
         codec = _CODECS[cls] = Codec(cls)
@@ -214,7 +214,7 @@ def codec_of(cls: type[M]) -> Codec[M]:
 
 
 def write_content(body: type[Any], content: object) -> bytes:
-    """What a frame of a stream holds whose frames hold such a body. Raises `BodyError`."""
+    """Returns the bytes of a stream's frame with this content. Raises `BodyError`."""
     if body is not bytes:
         return codec_of(body).write_text(cast("Message", content)).encode()
     if not isinstance(content, (bytes, bytearray, memoryview)):
@@ -223,7 +223,7 @@ def write_content(body: type[Any], content: object) -> bytes:
 
 
 def _slot(cls: type[Message], attribute: str) -> Slot:
-    """Evaluates the annotation of a field, which is a text, where its class stands."""
+    """Prepares a field. Evaluates its annotation, a text, in the module of its class."""
     annotation = cls.__annotations__[attribute]
     ty = eval(annotation, vars(sys.modules[cls.__module__])) if isinstance(annotation, str) else annotation  # noqa: S307
     inner, *marks = get_args(ty) if get_origin(ty) is Annotated else (ty,)
@@ -233,7 +233,7 @@ def _slot(cls: type[Message], attribute: str) -> Slot:
     # `Annotated` joins its marks with those of the type inside it.
     others = tuple(mark for mark in marks if not isinstance(mark, Key))
     inner, optional = _without_none(inner)
-    # What the key demands beyond the type is asked when all keys have come.
+    # The constraints of the key are checked once all keys have been read.
     read, _ = _codec(inner, replace(keys[0], **without_constraints()), others)
     _, write = _codec(inner, keys[0], others)
     return Slot(attribute, keys[0], read, write, optional=optional)
@@ -252,12 +252,12 @@ def _without_none(ty: Any) -> tuple[Any, bool]:
 
 
 def _codec(ty: Any, key: Key, marks: tuple[Any, ...] = ()) -> tuple[Read, Write]:
-    """Reader and writer of a type, under the constraints of a key."""
+    """Returns the reader and writer of a type, with the constraints of a key."""
     if get_origin(ty) is Annotated:
         ty, *rest = get_args(ty)
         marks = tuple(rest)
     if hasattr(ty, "__supertype__"):
-        # An id with a type of its own travels as what it holds.
+        # A `NewType` of an id is read and written as its base type.
         return _codec(ty.__supertype__, key, marks)
     for mark in marks:
         if isinstance(mark, Variants):
@@ -290,7 +290,7 @@ def _write_json(value: Any, out: list[str]) -> None:
 
 
 def _list(item: Any, key: Key) -> tuple[Read, Write]:
-    # The length is that of the outermost list, all else is asked of its items.
+    # The length applies to the outermost list, all other constraints to its items.
     check = length_check(key, "items")
     read_item, write_item = _codec(item, replace(key, length=None))
 

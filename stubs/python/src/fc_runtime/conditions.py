@@ -1,7 +1,7 @@
-"""Fields that are there only under certain values of the fields beside them.
+"""Fields that are present only for certain values of neighbouring fields.
 
-Reading and writing know nothing of conditions: what a peer sends is taken as it is. Who makes a message asks
-`checked()`.
+Reading and writing ignore conditions: messages from peers are accepted unchanged. `checked()` checks a message that the
+program creates.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 
 
 class ConditionErrorKind(str, Enum):
-    """How a field contradicts its condition."""
+    """Ways for a field to contradict its condition."""
 
     MISSING = "missing"
-    """It is not there although its condition holds."""
+    """The field is absent although its condition holds."""
     UNASKED = "unasked"
-    """It is there although its condition does not hold."""
+    """The field is present although its condition does not hold."""
 
 
 class ConditionError(ValueError):
-    """A message whose field contradicts its condition."""
+    """The error of a field that contradicts its condition."""
 
     def __init__(self, key: str, kind: ConditionErrorKind, condition: Condition, *, is_when: bool) -> None:
-        """Says which field, how, and what is asked."""
+        """Creates the error for a field and its condition."""
         words = "when" if is_when else "unless"
         asked = " and ".join(f"`{name}` is {' or '.join(map(_spelled, values))}" for name, values in condition.items())
         if kind is ConditionErrorKind.MISSING:
@@ -36,9 +36,9 @@ class ConditionError(ValueError):
             text = f"`{key}` is not asked for: it is sent {only}{words} {asked}"
         super().__init__(text)
         self.key: Final = key
-        """The wire key of the field."""
+        """The key of the field."""
         self.kind: Final = kind
-        """Whether it is missing, or there without being asked for."""
+        """The way the field contradicts its condition."""
 
 
 def _spelled(value: object) -> str:

@@ -1,4 +1,4 @@
-"""What a client and a robot can be told beforehand. Times are in seconds."""
+"""Configuration of a client and of a robot. Times are in seconds."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Backoff:
-    """How long to wait before connecting again."""
+    """Waits between attempts to connect."""
 
     first: float = 0.1
-    """Before the first attempt."""
+    """The first wait."""
     longest: float = 10.0
-    """Longest wait; each is twice the one before, minus up to a quarter at random."""
+    """The longest wait. Each wait is twice the one before, minus a random part of up to a quarter."""
     attempts: int | None = None
-    """Failed attempts in a row after which the connection is given up; `None`: never."""
+    """Failed attempts in a row after which the client gives up; `None` for never."""
 
     def __post_init__(self) -> None:
         """Checks every setting. Raises `TypeError` and `ValueError`."""
@@ -51,7 +51,7 @@ class Backoff:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClientConfig:
-    """What a client can be told beforehand; what is `None` is as the protocol says."""
+    """Configuration of a client. `None` means the protocol's default."""
 
     host: str | None = None
     """Address of the robot."""
@@ -62,27 +62,27 @@ class ClientConfig:
     connect_timeout: float = 3.0
     """Time for one attempt to connect."""
     call_timeout: float | None = None
-    """How long a call waits for its response."""
+    """Time a call waits for its response."""
     reconnect: Backoff | None = field(default_factory=Backoff)
-    """How to connect again after a loss; `None` gives up at the first one."""
+    """Waits between attempts to connect after a loss; `None` gives up at the first one."""
     keepalive: float | None = 30.0
-    """TCP probes after so much silence; `None` switches them off."""
+    """Silence before TCP probes; `None` for no probes."""
     stall_timeout: float = 10.0
     """Time without progress inside a frame, or while the robot does not read."""
     limits: Limits | None = None
-    """Bounds."""
+    """Limits."""
     queued_bytes: int | None = None
-    """Most bytes of reports that wait for a receiver."""
+    """Most bytes of reports waiting for a receiver."""
     first_id: int | None = None
-    """Message id of the first request; the time of day where none is given."""
+    """Message id of the first request; `None` for the time of day."""
     gzip: Gzip | None = None
-    """When requests are compressed; never where nothing is given."""
+    """Compression of requests; `None` for none."""
     verify_digest: bool = True
-    """Whether digests are verified."""
+    """Verifies digests."""
     resync: bool = False
-    """Whether to search for the next frame after bytes that are none."""
+    """Searches for the next frame after invalid bytes."""
     ssl: SSLContext | None = None
-    """For TLS at both ports; the protocol itself has none."""
+    """TLS at both ports; the protocol has none."""
 
     def __post_init__(self) -> None:
         """Checks every setting. Raises `TypeError` and `ValueError`."""
@@ -91,58 +91,58 @@ class ClientConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerConfig:
-    """What a robot can be told beforehand; what is `None` is as the protocol says."""
+    """Configuration of a robot. `None` means the protocol's default."""
 
     address: str = "0.0.0.0"  # noqa: S104 - a robot listens to all its networks
-    """Address to listen at."""
+    """Address to listen on."""
     command_port: int | None = None
-    """Port of commands; 0 is any that is free."""
+    """Port of commands; 0 for any free port."""
     data_port: int | None = None
-    """Port of streams; 0 is any that is free."""
+    """Port of streams; 0 for any free port."""
     handler_timeout: float | None = None
-    """How long a handler may take before the app is told."""
+    """Time a handler may take before the app gets the result for a timeout."""
     max_age: float | None | Literal["spec"] = "spec"
     """Oldest request that is still served, by the time in its envelope; `None` for any."""
     limits: Limits | None = None
-    """Bounds."""
+    """Limits."""
     queued_bytes: int | None = None
-    """Most bytes of reports that wait for one app."""
+    """Most bytes of reports waiting for one app."""
     connections_per_address: int = 8
-    """Most connections from one address, at each port. Apps behind one router share one."""
+    """Most connections from one address, at each port. Apps behind one router share an address."""
     allow: Mapping[str, Collection[Effect]] | None = None
-    """Networks, such as `10.0.0.0/24`, that apps may connect from, and what they may call there by effect.
+    """Networks that apps may connect from, such as `10.0.0.0/24`, with the effects of the commands that they may call.
 
-    The smallest network that has the address counts; `None` lets everybody do everything.
+    The smallest matching network counts. `None` allows everything to every address.
     """
     abandoned_handlers: int = 64
-    """Handlers that may run on without anybody waiting for their result; 0: none does."""
+    """Most handlers that may still run after their result is no longer awaited; 0 for none."""
     memory: int = 256 * 1024 * 1024
-    """Bytes that apps may make the robot hold; the connection that holds most is closed then."""
+    """Most bytes held for apps. Beyond it, the connection that holds most is closed."""
     first_id: int | None = None
-    """Message id of the first report to each app; the time of day where none is given."""
+    """Message id of the first report to each app; `None` for the time of day."""
     gzip: Gzip | None = None
-    """When responses and reports are compressed; never where nothing is given."""
+    """Compression of responses and reports; `None` for none."""
     verify_digest: bool = True
-    """Whether digests are verified."""
+    """Verifies digests."""
     resync: bool = False
-    """Whether to search for the next frame after bytes that are none."""
+    """Searches for the next frame after invalid bytes."""
     ssl: SSLContext | None = None
-    """For TLS at both ports; the protocol itself has none."""
+    """TLS at both ports; the protocol has none."""
     header_timeout: float = 5.0
     """Time for a header, from its first byte to its last."""
     stall_timeout: float = 30.0
     """Time without progress inside a frame, or while the app does not read."""
     least_rate: int = 1024
-    """Fewer bytes per second than this, over the stall timeout, are no progress."""
+    """Least bytes per second that count as progress, averaged over the stall timeout."""
     idle_timeout: float | None = None
-    """Time of silence between frames after which a connection is closed; `None` for any."""
+    """Silence between frames after which a connection is closed; `None` for any."""
     keepalive: float | None = 30.0
-    """TCP probes after so much silence; `None` switches them off."""
+    """Silence before TCP probes; `None` for no probes."""
     on_handler_error: Callable[[BaseException, Context], None] | None = None
-    """Is called with each error of a handler.
+    """Receives each error of a handler.
 
-    That is what it raised besides a `Refusal`, also after its timeout, or why its response cannot be sent. The error
-    may quote the request. The log has only its class and place. What this function raises is logged and ignored.
+    That is an exception other than a `Refusal`, also after the timeout, or the error of an invalid response. It may
+    quote the request. The log has only its class and place. An exception of this function is logged and ignored.
     """
 
     def __post_init__(self) -> None:
@@ -151,12 +151,12 @@ class ServerConfig:
 
 
 def _networks(name: str, value: Any) -> None:
-    """Checks what may be called from which networks."""
+    """Checks the effects of each network."""
     if not isinstance(value, Mapping):
         raise TypeError(wrong(name, value, "effects by network"))
     for network, effects in cast("dict[Any, Any]", value).items():
         network_expected = "a network such as '10.0.0.0/24'"
-        # An integer would be an address, too.
+        # `ip_network` would accept an integer as an address.
         if not isinstance(network, str):
             raise TypeError(wrong(name, network, network_expected))
         try:
@@ -225,6 +225,6 @@ _SERVER: Final[Mapping[str, Check]] = {
 
 
 def first_id_now() -> int:
-    """Where ids begin: the local time of day as the decimal digits `HHmmssSSS`."""
+    """Returns the first message id: the local time of day as the decimal digits `HHmmssSSS`."""
     now = datetime.now()  # noqa: DTZ005 - local time is meant
     return int(f"{now:%H%M%S}{now.microsecond // 1000:03}")

@@ -1,4 +1,4 @@
-"""An app's connection to a robot: calls, reports, losses and what comes after them."""
+"""An app's connection to a robot: calls, reports, losses and reconnecting."""
 
 from __future__ import annotations
 
@@ -51,19 +51,19 @@ R = TypeVar("R", bound="Message")
 Q = TypeVar("Q", bound="Message")
 
 _log: Final = logging.getLogger(__name__)
-# No acknowledgement is written behind so much that the robot has not read.
+# Most unsent bytes up to which reports are acknowledged.
 _ACKNOWLEDGE_UP_TO: Final = 256 * 1024
 _check_timeout: Final = or_none(duration)
 
 
 @dataclass(frozen=True, slots=True)
 class RawResponse:
-    """A response that is not read as a type."""
+    """A response without types."""
 
     refusal: Refusal | None
-    """What it refuses with, if it does."""
+    """The refusal; `None` for success."""
     json: Json
-    """All its keys, those of the envelope included."""
+    """All keys, including those of the envelope."""
 
 
 @dataclass(slots=True, eq=False)
@@ -79,10 +79,10 @@ class _Flight:
 
 
 class Connection:
-    """A connection of one protocol. Belongs to the event loop in which it is made."""
+    """A connection of one protocol. It belongs to the event loop that it is created in."""
 
     def __init__(self, protocol: Protocol, config: ClientConfig | None = None, dial: Dial | None = None) -> None:
-        """Nothing is connected yet: see `connect` and `connect_lazy`."""
+        """Creates the connection without connecting: see `connect` and `connect_lazy`."""
         config = config or ClientConfig()
         self.protocol: Final = protocol
         self.config: Final = config
@@ -116,18 +116,18 @@ class Connection:
         return ":".join(map(str, self.address))
 
     def _say(self, cause: str, level: int, text: str, *values: object) -> None:
-        """Write a line of the log, unless there have been many of this cause."""
+        """Writes a line of the log, unless this cause has had many."""
         held = self._lines.setdefault(cause, Thin()).line(self._loop.time())
         if held is not None:
             _log.log(level, "%s: " + text + "%s", self.protocol.name, *values, held)
 
     def out_of_order(self, report: str) -> None:
-        """Note a report that came out of order."""
+        """Counts a report that came out of order."""
         self.counters.reports_out_of_order += 1
         self._say("order", logging.INFO, "%s came out of order", report)
 
     async def connect(self) -> None:
-        """Connect, and connect again after each loss. Raises `ConnectError` if the first attempt fails."""
+        """Connects, and connects again after each loss. Raises `ConnectError` if the first attempt fails."""
         loss = await self._attempt()
         if loss is not None:
             self.life.turn(Closed(0, loss))
@@ -135,36 +135,36 @@ class Connection:
         self._driver = self._loop.create_task(self._drive())
 
     def connect_lazy(self) -> None:
-        """Connect in the background; calls made meanwhile wait within their timeout."""
+        """Connects in the background. Calls made meanwhile wait within their timeout."""
         self._driver = self._loop.create_task(self._drive())
 
     @property
     def state(self) -> ConnectionState:
-        """Whether there is a connection at this moment."""
+        """The present state of the connection."""
         return self.life.state
 
     @property
     def call_timeout(self) -> float:
-        """How long a call waits for its response, unless it is told otherwise."""
+        """Time a call waits for its response by default."""
         configured = self.config.call_timeout
         return self.protocol.defaults.call_timeout if configured is None else configured
 
     @property
     def in_flight(self) -> int:
-        """How many calls have not ended."""
+        """Number of calls in flight."""
         return self._session.in_flight
 
     async def states(self) -> AsyncIterator[ConnectionState]:
-        """The present state, and each that it comes to; nothing after `Closed`. Nothing is queued."""
+        """Yields the present state, then each change; `Closed` is the last. A slow reader gets the latest."""
         async for state in self.life.states():
             yield state
 
     async def closed(self) -> Loss:
-        """Wait until the connection has ended for good, and say why."""
+        """Waits until the connection has ended for good. Returns the reason."""
         return await self.life.closed()
 
     def close(self) -> None:
-        """Close the connection for good; calls in flight end as lost."""
+        """Closes the connection for good. Calls in flight end as lost."""
         if isinstance(self.life.state, Closed):
             return
         link, self._link = self._link, None
@@ -175,13 +175,13 @@ class Connection:
             self._driver.cancel()
 
     async def gone(self) -> None:
-        """After `close()`: wait until what was sent is out, for a second at most, and the transport is closed."""
+        """After `close()`, waits until the sent bytes are out, at most for a second, and closes the transport."""
         if self._last is not None:
             await asyncio.wait({self._last.gone}, timeout=1)
             self._last.abort()
 
     async def _attempt(self) -> Loss | None:
-        """Try to connect once; what has kept it from that, if anything."""
+        """Tries to connect once. Returns the loss if that fails."""
         link = Link(
             Decoder(self.protocol, self.limits, verify_digest=self.config.verify_digest, resync=self.config.resync),
             Patience(stall=self.config.stall_timeout, earns=True, keepalive=self.config.keepalive),
@@ -200,10 +200,10 @@ class Connection:
         return None
 
     async def _drive(self) -> None:
-        """Keep the connection: connect again as configured, after each loss and at first."""
+        """Keeps the connection up: connects, and reconnects after each loss as configured."""
         tries = Tries(self.config.reconnect)
         if self._link is not None:
-            # The first attempt has been made already.
+            # The first attempt was made before.
             tries.next()
         why = Loss(LossKind.NOT_YET)
         try:
@@ -240,9 +240,9 @@ class Connection:
         for frame, flight in self._session.requests():
             if not flight.waits:
                 continue
-            # Once more, and not as often as the connection is lost.
+            # A call is repeated only once, however often the connection is lost.
             flight.repeat = flight.repeat and not flight.sent
-            # It says when it is sent, and not when it was made.
+            # The envelope has the time of sending, so it is written again.
             flight.prepared = self._encoder.prepare(flight.write())
             self._send(frame, flight)
 
@@ -266,7 +266,7 @@ class Connection:
             self._lost.set_result(link.is_heard)
 
     def _down(self, loss: Loss, *, for_good: bool) -> None:
-        """End the calls that must not be sent twice, and keep the others for the next connection."""
+        """Ends the calls that must not be sent twice. The others wait for the next connection."""
         if isinstance(self.life.state, Closed):
             return
         if not for_good and isinstance(self.life.state, Connected):
@@ -327,11 +327,11 @@ class Connection:
         timeout: float | None = None,
         repeat: bool | None = None,
     ) -> R:
-        """Call a command, and wait for its response. Raises `CallError`.
+        """Calls a command, and waits for its response. Raises `CallError`.
 
-        `repeat` says whether to send the call once more when the connection was lost before its answer came; where it
-        is not given, only what reads is. To cancel the task that waits frees the call's place; the robot acts all the
-        same once the request is on its way.
+        `repeat` sends the call again if the connection is lost before its response comes. By default only commands with
+        the effect `read` are repeated. Cancelling the waiting task frees the call's place, but the robot still handles
+        a request that was sent.
         """
         if command.code is None:
             raise ValueError(f"{command.name} has no code yet")
@@ -350,7 +350,7 @@ class Connection:
         return response
 
     def asked(self, command: Command[Q, R], request: Message | None) -> Message:
-        """The request of a call: one without keys where none is given. Raises `InvalidRequestError`."""
+        """Returns the request of a call; one without keys for `None`. Raises `InvalidRequestError`."""
         if request is not None:
             return request
         try:
@@ -361,9 +361,9 @@ class Connection:
     async def call_raw(
         self, code: int, body: Json | None = None, *, timeout: float | None = None, repeat: bool = False
     ) -> RawResponse:
-        """Call any code with an object of the request's own keys; the envelope is added where it has none.
+        """Calls any code with an object of the request's keys. An absent envelope is added.
 
-        A result other than success is no error here, but in the response. Raises `CallError`.
+        A result other than success is not an error: the response has it. Raises `CallError`.
         """
         answer = await self._fly(code, lambda: write_raw_request(self.protocol, body), timeout, repeat=repeat)
         refusal: Refusal | None = None
@@ -377,7 +377,7 @@ class Connection:
         return RawResponse(refusal, Json.of_tree(entries))
 
     async def _fly(self, code: int, write: Callable[[], bytes], timeout: float | None, *, repeat: bool) -> bytes:
-        """Send what is written, and wait for the bytes of the answer. Raises `CallError`."""
+        """Sends a request, and waits for the bytes of the response. Raises `CallError`."""
         self.protocol.layout.check_code("code", code)
         _check_timeout("timeout", timeout)
         flag("repeat", repeat)
@@ -404,7 +404,7 @@ class Connection:
             self._session.cancel(frame)
 
     def receiver(self, codes: frozenset[int] | None = None) -> Receiver:
-        """Receive the reports of these codes from now on; `None` for all of them."""
+        """Returns a receiver for the reports of these codes from now on; `None` for all of them."""
         most = self.config.queued_bytes
         limit = self.limits.inflated_bytes if most is None else most
         receiver = Receiver(self.limits.queued_reports, limit, codes)
@@ -414,13 +414,13 @@ class Connection:
         return receiver
 
     def leave(self, receiver: Receiver) -> None:
-        """Receive no more reports with it."""
+        """Removes a receiver."""
         receiver.end()
         if receiver in self._receivers:
             self._receivers.remove(receiver)
 
     def read_report(self, raw: RawReport, cls: type[R]) -> R:
-        """Read a report as its type. Raises `BodyError`."""
+        """Reads a report with its type. Raises `BodyError`."""
         return read_request(self.protocol, cls, raw.data, self.limits)[1]
 
     def _arrive_broken(self, _: Link, error: FrameError) -> None:
@@ -458,7 +458,7 @@ class Connection:
             self.counters.repeated_reports += 1
             self._answer(frame.id, results.success)
         else:
-            # Apps serve no commands, and streams have a port of their own.
+            # Apps handle no commands, and streams use the data port.
             self._answer(frame.id, results.protocol)
 
     def _check_report(self, frame: Frame) -> BodyError | None:

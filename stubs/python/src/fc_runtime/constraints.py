@@ -1,4 +1,4 @@
-"""The constraints of a field on its values: declared with its `Key`, checked when the whole object has been read."""
+"""The constraints of a field on its values: declared with its `Key`, checked after reading the whole object."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constraints:
-    """The demands of a field on its values, in addition to their type."""
+    """Constraints of a field on its values, in addition to the type."""
 
     min: float | None = None
     """Least value of a number."""
@@ -26,19 +26,19 @@ class Constraints:
     pattern: str | None = None
     """Regular expression that a text must match as a whole."""
     only: tuple[Enum, ...] = ()
-    """Values of its enum that it takes; all where there are none."""
+    """Values of its enum that it takes; empty for all."""
 
 
 _NONE = Constraints()
 
 
 def without_constraints() -> dict[str, Any]:
-    """What to replace in a key for one that demands nothing but its type."""
+    """Returns the fields that remove all constraints from a key."""
     return {field.name: getattr(_NONE, field.name) for field in fields(Constraints)}
 
 
 def constraint(key: Constraints) -> Callable[[Any], None] | None:
-    """What raises `BodyError` for a value that the key does not take; `None` if the key takes all of its type."""
+    """Returns a function that raises `BodyError` for a value that breaks a constraint; `None` without constraints."""
     if all(getattr(key, name) == nothing for name, nothing in without_constraints().items()):
         return None
     low, high = key.min, key.max
@@ -63,7 +63,7 @@ def constraint(key: Constraints) -> Callable[[Any], None] | None:
 
 
 def length_check(key: Constraints, of: str) -> Callable[[int], None]:
-    """Checks how long a value is."""
+    """Returns a check of a value's length."""
     if key.length is None:
         return lambda _: None
     least, most = key.length
@@ -77,13 +77,13 @@ def length_check(key: Constraints, of: str) -> Callable[[int], None]:
 
 
 def outside(low: float | None, high: float | None) -> BodyError:
-    """The error of a number that is not within these bounds."""
+    """Returns the error of a number outside these bounds."""
     least, most = ("−∞" if low is None else low), ("∞" if high is None else high)
     return BodyError(BodyErrorKind.OUT_OF_RANGE, f"the number must be within {least} … {most}")
 
 
 def _each(value: Any) -> Iterator[Any]:
-    """A value, or the items of a list."""
+    """Yields a value, or the items of a list."""
     if isinstance(value, list):
         for item in cast("Sequence[Any]", value):
             yield from _each(item)

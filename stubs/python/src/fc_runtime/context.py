@@ -1,4 +1,4 @@
-"""Which request a handler is working on."""
+"""The request that a handler works on."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ if TYPE_CHECKING:
 
 
 class Context:
-    """Which request a handler is working on, and whether anybody waits for its result."""
+    """The request that a handler works on, with the state of waiting for its result."""
 
     __slots__ = ("_abandoned", "_waiting", "address", "code", "connection", "effect", "id")
 
     def __init__(self, connection: int, address: str, code: int, message_id: int, effect: Effect) -> None:
-        """Of one request."""
+        """Creates the context of a request."""
         self.connection: Final = connection
         """The app's connection."""
         self.address: Final = address
@@ -25,24 +25,24 @@ class Context:
         self.id: Final = message_id
         """Message id."""
         self.effect: Final = effect
-        """What the command does, for all that is known."""
+        """Effect of the command; `UNKNOWN` for undeclared codes."""
         self._abandoned = False
         self._waiting: list[asyncio.Future[None]] | None = None
 
     @property
     def is_abandoned(self) -> bool:
-        """Whether nobody waits for the result any more."""
+        """`True` if the result is no longer awaited."""
         return self._abandoned
 
     async def abandoned(self) -> None:
-        """Wait until nobody waits for the result any more."""
+        """Waits until the result is no longer awaited."""
         if not self._abandoned:
             waiting: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self._waiting = [*(self._waiting or ()), waiting]
             await waiting
 
     def abandon(self) -> None:
-        """Nobody waits for the result any more."""
+        """Notes that the result is no longer awaited."""
         self._abandoned = True
         for waiting in self._waiting or ():
             if not waiting.done():

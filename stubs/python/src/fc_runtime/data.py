@@ -1,8 +1,8 @@
 """An app's connection to the data port.
 
-Nothing is queued but one frame that has come, unless something is subscribed to: while the app does not take it, the
-robot is not read. Nothing on this port is acknowledged, so each loss is told once to who receives, and once to who
-sends if anything was sent over the lost connection. Nothing is sent twice.
+Only one received frame is queued, except for subscriptions. Until the app takes it, nothing more is read from the
+robot. This port has no acknowledgements and nothing is sent twice. Each loss is reported once to the receiver. It is
+reported once to the sender, if the lost connection had sent anything.
 """
 
 from __future__ import annotations
@@ -55,13 +55,13 @@ Arrived: TypeAlias = "StreamFrame | DataError"
 class DataConnection:
     """A connection to a robot's data port: frames of raw bytes in both directions.
 
-    It is made in the background as soon as the command connection is there, made again after a loss, and whenever the
-    command connection was made again: a robot knows whose it is by the address alone. It ends with the command
-    connection, or with `close()`.
+    It is made in the background once the command connection exists. It is made again after a loss and after each new
+    command connection, since a robot knows its owner only by the address. It ends with the command connection, or with
+    `close()`.
     """
 
     def __init__(self, commands: Connection, dial: Dial | None = None) -> None:
-        """Beside a connection to the command port."""
+        """Creates the data connection of a command connection."""
         config, protocol = commands.config, commands.protocol
         self.life: Final = Life()
         self._commands: Final = commands
@@ -76,7 +76,7 @@ class DataConnection:
         self._sending: Final = asyncio.Lock()
         self._link: Link | None = None
         self._lost: asyncio.Future[Loss] = self._loop.create_future()
-        # Beside a loss that nobody has been told yet there is room for one frame.
+        # There is room for one frame, and for a loss not yet reported.
         self._inbox: Final[list[Arrived]] = []
         self._unsure: Loss | None = None
         self._has_sent = False
@@ -91,21 +91,21 @@ class DataConnection:
 
     @property
     def state(self) -> ConnectionState:
-        """Whether there is a connection at this moment, and why not."""
+        """The present state of the connection, with the reason if there is none."""
         return self.life.state
 
     def states(self) -> AsyncIterator[ConnectionState]:
-        """The present state, and each that it comes to; nothing after `Closed`."""
+        """Yields the present state, then each change; `Closed` is the last."""
         return self.life.states()
 
     async def closed(self) -> Loss:
-        """Wait until the connection has ended for good, and say why."""
+        """Waits until the connection has ended for good. Returns the reason."""
         return await self.life.closed()
 
     async def connected(self) -> None:
-        """Wait until there is a connection, for no longer than the call timeout. Raises `DataError`.
+        """Waits until there is a connection, at most for the call timeout. Raises `DataError`.
 
-        A robot sends what it is asked for to the data connections that there are: wait for this one before asking.
+        A robot sends requested data only to existing data connections: call this before the request.
         """
         await self._wait_connected(self._loop.time() + self._patience)
 
@@ -123,7 +123,7 @@ class DataConnection:
             raise DataNotConnectedError(self.state.why)
 
     async def _drive(self) -> None:
-        """Keep the connection up."""
+        """Keeps the connection up."""
         tries = Tries(self._commands.config.reconnect)
         why = Loss(LossKind.NOT_YET)
         try:
@@ -150,7 +150,7 @@ class DataConnection:
             self._end(commands.why if isinstance(commands, Closed) else why)
 
     async def _commands_connected(self) -> int | None:
-        """Wait for the command connection, and say which it is; `None` once there will be none."""
+        """Waits for the command connection. Returns its number; `None` once there will be none."""
         async for state in self._commands.life.states():
             if isinstance(state, Connected):
                 return state.connects
@@ -180,7 +180,7 @@ class DataConnection:
         return None
 
     async def _serve(self, number: int) -> Loss:
-        """Wait until the connection ends, or the command connection that it belongs to."""
+        """Waits until the connection ends, or the command connection that it belongs to."""
 
         async def parted() -> Loss:
             async for state in self._commands.life.states():
@@ -198,7 +198,7 @@ class DataConnection:
             watching.cancel()
 
     def _down(self, why: Loss) -> None:
-        """The connection that there was is lost, and what was on its way with it."""
+        """Notes that the connection is lost, with the frames in flight."""
         if self.life.is_closed:
             return
         link, self._link = self._link, None
@@ -224,7 +224,7 @@ class DataConnection:
         self._tell()
 
     def close(self) -> None:
-        """Close the connection. What is being sent is finished; what has come can still be received."""
+        """Closes the connection. A frame being sent is finished, and received frames can still be taken."""
         self._end(Loss(LossKind.HERE))
         self._driver.cancel()
 
@@ -257,7 +257,7 @@ class DataConnection:
         self._place(DataFrameError(error))
 
     def _place(self, arrived: Arrived) -> None:
-        """Leave what has come where it is asked for."""
+        """Delivers a received frame or error to the subscriptions or to the inbox."""
         code = arrived.code if isinstance(arrived, (StreamFrame, DataFrameError)) else None
         takers = [one for one in self._takers if one.code == code]
         if takers:
@@ -266,7 +266,7 @@ class DataConnection:
         elif len(self._inbox) < (1 if self._takers else 2):
             self._inbox.append(arrived)
         else:
-            # Subscribers do not wait for a receiver that there may not be.
+            # Subscribers must not wait for a receiver that may not exist.
             self._skipped += 1
         if self._inbox and not self._takers and self._link is not None:
             self._link.hold("inbox")
@@ -290,9 +290,10 @@ class DataConnection:
             self._link.let_go("inbox")
 
     async def recv(self) -> StreamFrame:
-        """The next frame to which nobody has subscribed. Raises `DataError`.
+        """Returns the next frame without a subscription. Raises `DataError`.
 
-        Unless that is `DataClosedError`, the next call goes on with the next frame. It may be cancelled.
+        After any error except `DataClosedError`, the next call continues with the next frame. The call may be
+        cancelled.
         """
         while True:
             if self._inbox:
@@ -308,13 +309,13 @@ class DataConnection:
 
     @property
     def missed(self) -> int:
-        """How many frames to which nobody had subscribed have been dropped so far, for nobody took the one before."""
+        """Number of frames without a subscription dropped so far, because the one before was not taken."""
         return self._skipped
 
     def subscribe(self, stream: Stream[B]) -> Subscription[B]:
-        """Receive the frames of one stream from now on, in a queue of their own; `recv` no longer gives them.
+        """Subscribes to the frames of one stream. They get a separate queue and no longer come to `recv`.
 
-        As long as anybody has subscribed, the robot is read whatever the app takes.
+        While there is a subscription, the robot is read even if the app takes no frames.
         """
         if stream.code is None:
             raise ValueError(f"{stream.name} has no code yet")
@@ -324,12 +325,12 @@ class DataConnection:
         return Subscription(self, stream, taker)
 
     def leave(self, taker: Taker) -> None:
-        """Keep no more frames for a subscription."""
+        """Ends a subscription."""
         if taker in self._takers:
             self._takers.remove(taker)
 
     async def next_of(self, taker: Taker) -> StreamFrame:
-        """What comes next for a subscription. Raises `DataError`."""
+        """Returns the next frame of a subscription. Raises `DataError`."""
         while not taker.waiting:
             if isinstance(self.state, Closed) or taker not in self._takers:
                 raise DataClosedError(self.state.why if isinstance(self.state, Closed) else Loss(LossKind.HERE))
@@ -340,7 +341,7 @@ class DataConnection:
         return taken
 
     async def send_stream(self, stream: Stream[B], message_id: int, content: B) -> None:
-        """Send a frame of one of the app's own streams; all else is as with `send`."""
+        """Sends a frame of an app's stream, as `send` does."""
         if stream.code is None:
             raise ValueError(f"{stream.name} has no code yet")
         try:
@@ -350,11 +351,11 @@ class DataConnection:
         await self.send(stream.code, message_id, data)
 
     async def send(self, code: int, message_id: int, data: bytes) -> None:
-        """Send a frame of raw bytes; done when the socket has taken it. Raises `DataError`.
+        """Sends a frame of raw bytes, and returns when the socket has taken it. Raises `DataError`.
 
-        Without a connection it waits for one, for no longer than the call timeout. `DataLostError` says that this
-        frame, or one sent before, may not have arrived; after `DataNotConnectedError`, `DataClosedError` and
-        `DataFrameError` nothing was sent. A frame that has been begun is finished also when this is cancelled.
+        Waits for a connection up to the call timeout. After `DataLostError`, this frame or one sent before may not have
+        arrived. After `DataNotConnectedError`, `DataClosedError` and `DataFrameError`, nothing was sent. A frame that
+        has begun is finished even if this call is cancelled.
         """
         frame, data = stream_frame(self._commands.protocol, code, message_id), frame_bytes(data)
         deadline = self._loop.time() + self._patience
@@ -376,7 +377,7 @@ class DataConnection:
             link.send(data)
             if await link.drained() and self._link is link:
                 return
-            # What has become of it is known when the driver has taken note of the end.
+            # The fate of the frame is known once the driver has noted the end.
             while self._link is link and not self.life.is_closed:
                 await self._wait()
             known, self._unsure = self._unsure, None
@@ -384,22 +385,22 @@ class DataConnection:
             raise DataLostError(known or (state.why if not isinstance(state, Connected) else Loss(LossKind.BROKEN)))
 
     async def __aenter__(self) -> DataConnection:
-        """Wait until there is a connection."""
+        """Waits until there is a connection."""
         await self.connected()
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close the connection."""
+        """Closes the connection."""
         self.close()
 
 
 class Subscription(Generic[B]):
-    """The frames of one stream, each read as its type; go through them with `async for`, to the connection's end.
+    """The decoded frames of one stream until the connection ends, for `async for`.
 
-    It has a queue of four frames. While that is full, the oldest makes way for the one that comes, and `missed` counts
-    it. It goes on over reconnecting; `close()` it, or enter it with `async with`.
+    It has a queue of four frames. When that is full, the newest frame replaces the oldest, and `missed` counts it. It
+    continues after reconnecting. To end it, call `close()` or use `async with`.
     """
 
     def __init__(self, data: DataConnection, stream: Stream[B], taker: Taker) -> None:
@@ -410,11 +411,13 @@ class Subscription(Generic[B]):
 
     @property
     def missed(self) -> int:
-        """How many frames have made way so far."""
+        """Number of frames replaced by later ones so far."""
         return self._taker.missed
 
     async def recv(self) -> StreamItem[B]:
-        """The next frame. Raises `DataError`; unless that is `DataClosedError`, the next call goes on."""
+        """Returns the next frame. Raises `DataError`. After any error except `DataClosedError`, the next call
+        continues.
+        """
         frame = await self._data.next_of(self._taker)
         body: Any = self._stream.body
         if body is bytes:
@@ -425,35 +428,35 @@ class Subscription(Generic[B]):
             raise DataInvalidError(error) from None
 
     def close(self) -> None:
-        """Receive no more."""
+        """Ends receiving."""
         self._data.leave(self._taker)
 
     def __aiter__(self) -> Subscription[B]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __anext__(self) -> StreamItem[B]:
-        """The next frame."""
+        """Returns the next frame."""
         try:
             return await self.recv()
         except DataClosedError:
             raise StopAsyncIteration from None
 
     async def __aenter__(self) -> Subscription[B]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Receive no more."""
+        """Ends receiving."""
         self.close()
 
 
 class Streams:
-    """The streams of the data port: each that the robot sends can be subscribed to, each of the app's own be sent."""
+    """The streams of the data port: subscribe to the robot's, send the app's."""
 
     def __init__(self, data: DataConnection) -> None:
-        """Those of a data connection; see `Client.data`."""
+        """Creates the streams of a data connection; see `Client.data`."""
         self.data: Final = data
-        """The data connection: its state, and frames that nobody has subscribed to."""
+        """The data connection: its state, and frames without a subscription."""

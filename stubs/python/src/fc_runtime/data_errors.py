@@ -1,4 +1,4 @@
-"""What can go wrong on a data connection."""
+"""Errors of a data connection."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 
 
 class DataError(Exception):
-    """Why a frame of raw bytes could not be sent, or what came instead of one."""
+    """The error of sending or receiving a frame of raw bytes."""
 
     @property
     def name(self) -> str:
-        """Its name, the same in every language."""
+        """Name of the error, the same in every language."""
         return ""
 
 
@@ -23,19 +23,19 @@ class _DataLossError(DataError):
     def __init__(self, text: str, loss: Loss) -> None:
         super().__init__(f"{text}: {loss}")
         self.loss: Final = loss
-        """Why there is no connection."""
+        """The reason for having no connection."""
 
 
 class DataLostError(_DataLossError):
-    """The connection was lost, and is being made again; what was on its way may be lost with it."""
+    """The connection was lost, and is made again. Frames in flight may be lost with it."""
 
     def __init__(self, loss: Loss) -> None:
-        """With the reason."""
+        """Creates the error with the reason."""
         super().__init__("the data connection was lost, and what was on its way may be lost with it", loss)
 
     @property
     def name(self) -> str:
-        """Its name, the same in every language."""
+        """Name of the error, the same in every language."""
         return "lost"
 
 
@@ -43,12 +43,12 @@ class DataNotConnectedError(_DataLossError):
     """No connection in time; the frame has not been sent."""
 
     def __init__(self, loss: Loss) -> None:
-        """With the reason."""
+        """Creates the error with the reason."""
         super().__init__("there was no data connection in time", loss)
 
     @property
     def name(self) -> str:
-        """Its name, the same in every language."""
+        """Name of the error, the same in every language."""
         return "not_connected"
 
 
@@ -56,32 +56,32 @@ class DataClosedError(_DataLossError):
     """The connection is closed for good; the frame has not been sent."""
 
     def __init__(self, loss: Loss) -> None:
-        """With the reason."""
+        """Creates the error with the reason."""
         super().__init__("the data connection is closed", loss)
 
     @property
     def name(self) -> str:
-        """Its name, the same in every language."""
+        """Name of the error, the same in every language."""
         return "closed"
 
 
 class DataFrameError(DataError):
-    """A frame could not be read and was skipped, or the one to be sent is too long. The connection stays open."""
+    """A received frame was unreadable and skipped, or the frame to send is too long. The connection stays open."""
 
     def __init__(self, error: FrameError) -> None:
-        """With what is wrong."""
+        """Creates the error from the frame's error."""
         super().__init__(str(error))
         self.error: Final = error
-        """What is wrong."""
+        """The error of the frame."""
 
     @property
     def name(self) -> str:
-        """That of what is wrong."""
+        """Name of the frame's error."""
         return self.error.name
 
     @property
     def code(self) -> int | None:
-        """What the frame belongs to, if that is known."""
+        """Code of the command that the frame belongs to, if known."""
         return None if self.error.frame is None else self.error.frame.code
 
 
@@ -89,44 +89,44 @@ class DataRefusedError(DataError):
     """The robot has refused a frame sent to it. The connection stays open."""
 
     def __init__(self, frame: FrameId, refusal: Refusal) -> None:
-        """With what the robot has answered."""
+        """Creates the error from the robot's refusal."""
         super().__init__(f"the robot has refused the frame of 0x{frame.code:04X}: {refusal}")
         self.frame: Final = frame
-        """Which."""
+        """The frame sent."""
         self.refusal: Final = refusal
-        """What the robot has answered."""
+        """The robot's refusal."""
 
     @property
     def name(self) -> str:
-        """Its name, the same in every language."""
+        """Name of the error, the same in every language."""
         return "refused"
 
 
 class DataUnexpectedError(DataError):
-    """A frame came that is not a stream's. It has been skipped, and the connection stays open."""
+    """A frame that is not a stream's was received and skipped. The connection stays open."""
 
     def __init__(self, frame: FrameId) -> None:
-        """Says which."""
+        """Creates the error for the frame."""
         super().__init__(f"no stream: 0x{frame.code:04X} of kind {frame.kind}")
         self.frame: Final = frame
-        """Which."""
+        """The frame received."""
 
     @property
     def name(self) -> str:
-        """Its name, the same in every language."""
+        """Name of the error, the same in every language."""
         return "unexpected_frame"
 
 
 class DataInvalidError(DataError):
-    """What a frame carries is not what its stream does, or what is to be sent breaks a constraint."""
+    """The content of a frame does not fit its stream, or breaks a constraint."""
 
     def __init__(self, error: BodyError) -> None:
-        """With what is wrong."""
+        """Creates the error from the error in the content."""
         super().__init__(f"the content of a stream is invalid: {error}")
         self.error: Final = error
-        """What is wrong."""
+        """The error in the content."""
 
     @property
     def name(self) -> str:
-        """That of what is wrong."""
+        """Name of the error in the content."""
         return self.error.name

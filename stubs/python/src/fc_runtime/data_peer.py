@@ -1,4 +1,4 @@
-"""One app's connection to the data port of a robot, and whose it is."""
+"""One app's connection to the data port of a robot, and its owner."""
 
 from __future__ import annotations
 
@@ -20,38 +20,38 @@ if TYPE_CHECKING:
     from .server import Server
 
 
-# Frames waiting for one app, or for the robot, besides the one on its way.
+# Frames waiting for one app, or for the robot, without the one being sent.
 _QUEUE: Final = 4
 
 
 @dataclass(frozen=True, slots=True)
 class AppStream:
-    """A frame of raw bytes that an app has sent."""
+    """A frame of raw bytes from an app."""
 
     connection: int
-    """The data connection that brought it."""
+    """The data connection that it came over."""
     address: str
     """The app's address."""
     code: int
-    """What it belongs to."""
+    """Code of the command that it belongs to."""
     id: int
     """Its message id."""
     data: bytes
     """Its bytes."""
 
     def __repr__(self) -> str:
-        """Without its bytes, which are no reading."""
+        """Shows it without its bytes."""
         return f"AppStream(connection={self.connection}, code=0x{self.code:04X}, id={self.id}, bytes={len(self.data)})"
 
 
 class AppStreams:
-    """The frames of raw bytes that apps send, in the order they came on each connection; go through with `async for`.
+    """The frames of raw bytes from apps, in their order on each connection, for `async for`.
 
-    While the queue is full, no data connection is read.
+    While the queue is full, data connections are not read.
     """
 
     def __init__(self, most_bytes: int, on_room: Callable[[], None]) -> None:
-        """Nothing has come. `on_room` is called when there may be room again."""
+        """Creates an empty queue. `on_room` is called when there may be room again."""
         self._most_bytes: Final = most_bytes
         self._on_room: Final = on_room
         self._frames: Final[deque[AppStream]] = deque()
@@ -60,20 +60,20 @@ class AppStreams:
 
     @property
     def is_full(self) -> bool:
-        """Whether no more frames are taken."""
+        """`True` if there is no room for a frame."""
         return not self._is_over and (len(self._frames) >= _QUEUE or self.held() >= self._most_bytes)
 
     def held(self, connection: int | None = None) -> int:
-        """Bytes that wait; those of one connection, if one is given."""
+        """Number of waiting bytes, in total or of one connection."""
         return sum(len(one.data) for one in self._frames if connection in (None, one.connection))
 
     def put(self, frame: AppStream) -> None:
-        """Queue a frame. The queue is not full."""
+        """Queues a frame. The caller checks that there is room."""
         self._frames.append(frame)
         self._wake()
 
     def drop(self, connection: int) -> None:
-        """Forget the frames of a connection."""
+        """Drops the frames of a connection."""
         left = [one for one in self._frames if one.connection != connection]
         self._frames.clear()
         self._frames.extend(left)
@@ -84,13 +84,13 @@ class AppStreams:
             self._waiting.set_result(None)
 
     def end(self) -> None:
-        """No more will come: the robot has ended, or another receiver has taken over."""
+        """Ends the queue: the robot has ended, or another receiver has taken over."""
         self._is_over = True
         self._on_room()
         self._wake()
 
     async def recv(self) -> AppStream | None:
-        """The next frame; `None` once the robot has ended or another receiver has taken over."""
+        """Returns the next frame; `None` once the robot has ended or another receiver has taken over."""
         while not self._frames:
             if self._is_over:
                 return None
@@ -104,11 +104,11 @@ class AppStreams:
         return frame
 
     def __aiter__(self) -> AppStreams:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __anext__(self) -> AppStream:
-        """The next frame."""
+        """Returns the next frame."""
         frame = await self.recv()
         if frame is None:
             raise StopAsyncIteration
@@ -119,14 +119,14 @@ class DataPeer:
     """One app's data connection."""
 
     def __init__(self, server: Server, connection: int) -> None:
-        """Of a robot, with a number of its own."""
+        """Creates a data connection of a robot, with this number."""
         config = server.config
         self.server: Final = server
         self.connection: Final = connection
         self.address = ""
         """The app's address."""
         self.owners: Final[set[int]] = set()
-        """Command connections that have been open at the same address meanwhile."""
+        """Command connections open at the same address since this one began."""
         self._outbox: Final[deque[tuple[FrameId, Prepared]]] = deque()
         self._room: Final[set[asyncio.Future[None]]] = set()
         self._writer: asyncio.Task[None] | None = None
@@ -150,12 +150,12 @@ class DataPeer:
 
     @property
     def is_heard(self) -> bool:
-        """Whether anything has come over it."""
+        """`True` if bytes have been received over it."""
         return self.link.received > 0
 
     @property
     def held(self) -> int:
-        """Bytes that it makes the robot hold."""
+        """Bytes held for it."""
         return self.link.held + sum(len(prepared.data) for _, prepared in self._outbox)
 
     def _arrive(self, _: Link, frame: Frame) -> None:
@@ -171,7 +171,7 @@ class DataPeer:
         self._refuse(error.frame)
 
     def _refuse(self, frame: FrameId) -> None:
-        """Reply to a frame that cannot be used, if there is room for that."""
+        """Refuses a frame that cannot be used, if there is room for the response."""
         server = self.server
         if not frame.response and server.protocol.has_result and len(self._outbox) < _QUEUE:
             data = write_response(server.protocol, server.protocol.results.protocol)
@@ -191,7 +191,7 @@ class DataPeer:
             self._writer = self.server.loop.create_task(self._write())
 
     async def _write(self) -> None:
-        """Send one frame after the other, each when the socket has taken the one before."""
+        """Sends the frames one after another, each when the socket has taken the one before."""
         while self._outbox and await self.link.drained():
             frame, prepared = self._outbox.popleft()
             self.link.send(self.server.encoder.frame(frame, prepared))
@@ -206,7 +206,7 @@ class DataPeer:
             self.link.close()
 
     async def send(self, frame: FrameId, prepared: Prepared) -> bool:
-        """Queue a frame as soon as there is room for it; false if the connection is over."""
+        """Queues a frame as soon as there is room. Returns `False` if the connection is over."""
         while len(self._outbox) >= _QUEUE and not self._is_over:
             waiting: asyncio.Future[None] = self.server.loop.create_future()
             self._room.add(waiting)
@@ -229,7 +229,7 @@ class DataPeer:
         self.over(at_once=why in ("broken", "unread"))
 
     def over(self, *, at_once: bool = False) -> None:
-        """End the connection; what waits to be sent is sent still, unless at once."""
+        """Ends the connection. Queued frames are still sent, unless `at_once`."""
         if self._is_over:
             return
         self._is_over = True

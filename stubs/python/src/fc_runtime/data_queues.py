@@ -1,4 +1,4 @@
-"""Frames of streams on their way to the app."""
+"""Frames of streams waiting for the app."""
 
 from __future__ import annotations
 
@@ -23,41 +23,41 @@ class StreamFrame:
     """A frame of raw bytes."""
 
     code: int
-    """What it belongs to."""
+    """Code of the command that it belongs to."""
     id: int
-    """The message id of the request that asked for it."""
+    """Message id of the request that asked for it."""
     data: bytes
     """Its bytes, decompressed."""
 
     def __repr__(self) -> str:
-        """Without its bytes: pictures and maps are no reading."""
+        """Shows it without its bytes."""
         return f"StreamFrame(code=0x{self.code:04X}, id={self.id}, bytes={len(self.data)})"
 
 
 @dataclass(frozen=True, slots=True)
 class StreamItem(Generic[B]):
-    """A frame of a stream, read."""
+    """A decoded frame of a stream."""
 
     id: int
-    """The message id of the request that asked for it."""
+    """Message id of the request that asked for it."""
     content: B
-    """What it carries."""
+    """The content."""
 
 
 class Taker:
     """The queue of one subscription."""
 
     def __init__(self, code: int) -> None:
-        """For the frames of a code."""
+        """Creates a queue for the frames of a code."""
         self.code: Final = code
-        """Of which code."""
+        """Code of the frames."""
         self.waiting: Final[deque[StreamFrame | DataError]] = deque()
-        """What has come."""
+        """Waiting frames and errors."""
         self.missed = 0
-        """How many frames have made way."""
+        """Number of frames replaced by later ones."""
 
     def push(self, arrived: StreamFrame | DataError) -> None:
-        """Queue what has come; the oldest frame makes way."""
+        """Queues a frame or error. If the queue is full, it replaces the oldest frame."""
         if len(self.waiting) >= _QUEUE:
             oldest = next((index for index, one in enumerate(self.waiting) if isinstance(one, StreamFrame)), 0)
             del self.waiting[oldest]
@@ -65,6 +65,6 @@ class Taker:
         self.waiting.append(arrived)
 
     def lost(self, why: Loss) -> None:
-        """Note that frames may be missing here."""
+        """Notes that frames may be missing here."""
         if not self.waiting or not isinstance(self.waiting[-1], DataLostError):
             self.push(DataLostError(why))

@@ -1,4 +1,4 @@
-"""What is withdrawn, marked for editors and type checkers."""
+"""Marks deprecated items for editors and type checkers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ else:
     T = TypeVar("T", bound="type | Callable[..., Any]")
 
     def deprecated(message: str) -> Callable[[T], T]:
-        """Marks what is withdrawn: to call such a function warns, and of a class it is only said."""
+        """Marks a deprecated function or class. Calling a marked function warns; a class only has the mark."""
 
         def mark(withdrawn: T) -> T:
             withdrawn.__deprecated__ = message

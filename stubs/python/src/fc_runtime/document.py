@@ -1,8 +1,7 @@
-"""JSON text and the tree that it is read into.
+"""JSON text, and the tree that it is read into.
 
-The scanner is that of the standard library, in C; what it leaves open is decided here: numbers keep their spelling,
-keys may come twice, nesting and the number of values have limits, and text that is not JSON (`NaN`, a byte order mark)
-is refused.
+The scanner of the standard library, in C, reads the text. This module adds the rest. Numbers keep their spelling, and
+keys may be repeated. Nesting and the number of values have limits. Invalid text (`NaN`, a byte order mark) is refused.
 """
 
 from __future__ import annotations
@@ -20,22 +19,22 @@ if TYPE_CHECKING:
 
 
 class Number(str):
-    """A number in its own spelling."""
+    """A number with its spelling."""
 
     __slots__ = ()
 
 
 class Entries(list[tuple[str, "Tree"]]):
-    """The keys and values of an object, in their order; a key may come twice."""
+    """The keys and values of an object, in their order; keys may be repeated."""
 
     __slots__ = ()
 
 
 Tree: TypeAlias = Union[str, Number, bool, None, "list[Tree]", Entries]
-"""What a JSON text is read into."""
+"""The tree of a JSON text."""
 
 Plain: TypeAlias = Union[str, int, float, bool, None, "list[Plain]", "dict[str, Plain]"]
-"""What `json.loads` makes of a JSON text."""
+"""A value as `json.loads` returns it."""
 
 DEFAULT_DEPTH: Final = 64
 """Default limit of nesting levels."""
@@ -43,14 +42,14 @@ DEFAULT_VALUES: Final = 1 << 20
 """Default limit of keys and items."""
 
 MAX_DEPTH: Final = 127
-"""Levels of nesting that are read whatever is configured."""
+"""Greatest nesting that can be read, for any configuration."""
 
 _SURROGATE: Final = re.compile("[\ud800-\udfff]")
 # Size of a chunk of the survey, in bytes.
 _CHUNK: Final = 1 << 16
 _SPACES: Final = " \t\n\r"
 _SPACE: Final = _SPACES.encode()
-# Brackets, commas and quotes as they are, and something else for all else.
+# Maps brackets, commas and quotes to themselves, and all other bytes to `0`.
 _STRUCTURE: Final = bytes(byte if byte in b'[]{},"' else ord("0") for byte in range(256))
 _STEPS: Final = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
 _TOKENS: Final = re.compile(rb'"[^"\\]*(?:\\.[^"\\]*)*"?|[\[\]{},]|[^"\[\]{}, \t\n\r]+', re.DOTALL)
@@ -64,7 +63,7 @@ def _refuse(word: str) -> NoReturn:
 _DECODER: Final = json.JSONDecoder(
     object_pairs_hook=Entries, parse_float=Number, parse_int=Number, parse_constant=_refuse
 )
-# Finds what is no JSON, and keeps little of what it reads.
+# Finds invalid JSON, and keeps little of the text.
 _CHECKER: Final = json.JSONDecoder(object_pairs_hook=len, parse_float=len, parse_int=len, parse_constant=_refuse)
 
 
@@ -81,18 +80,17 @@ def _bad_json(error: json.JSONDecodeError) -> BodyError:
 
 
 class _Survey:
-    """Counts depth and values of a text as a reader does, and stops at the first place that is beyond a limit.
+    """Counts depth and values of a text as a reader does, and stops at the first place beyond a limit.
 
-    It looks at chunks as a whole, and at single brackets only in the chunk that has that place. The
-    scanner finds text that is not JSON.
+    It scans whole chunks, and single brackets only in the chunk with that place. The scanner finds invalid JSON.
     """
 
     def __init__(self, data: bytes, depth: int, values: int) -> None:
         self._data: Final = data
         self._depth: Final = depth
         self._values: Final = values
-        # Before the chunk: levels, values, whether it begins inside a string, and the place of a bracket right before
-        # it, which may be that of an empty list or object and is counted with the chunk.
+        # State before the chunk: level, count, and if it begins inside a string. `_open_at` is the place of a bracket
+        # right before it, which may open an empty list or object. It is counted with the chunk.
         self._level = self._count = 0
         self._is_inside = False
         self._open_at: int | None = None
@@ -102,7 +100,7 @@ class _Survey:
         data, at = self._data, 0
         while at < len(data):
             end = min(at + _CHUNK, len(data))
-            # An escape is of one chunk.
+            # An escape must not be split between chunks.
             run = end - len(data[at:end].rstrip(b"\\")) - at
             end += run % 2
             if not self._takes(at, end):
@@ -111,12 +109,12 @@ class _Survey:
             at = end
 
     def _takes(self, at: int, end: int) -> bool:
-        """Counts a chunk; false if something in it is beyond a limit."""
+        """Counts a chunk. Returns `False` if a place in it is beyond a limit."""
         chunk = self._data[at:end]
         if b"\\" in chunk:
             chunk = chunk.replace(b"\\\\", b"").replace(b'\\"', b"")
         parts = chunk.split(b'"')
-        # Strings are one quote each.
+        # Reduces each string to one quote.
         bare = b'"'.join(parts[1 if self._is_inside else 0 :: 2])
         if self._is_inside:
             bare = b'"' + bare
@@ -137,8 +135,8 @@ class _Survey:
         return True
 
     def _is_flat(self, brackets: bytes) -> bool:
-        """True if no bracket exceeds the limit."""
-        # Most texts have few levels: without the two innermost of each place, hardly any bracket is left.
+        """Returns `True` if no bracket exceeds the limit."""
+        # Most texts have few levels: without the two innermost of each place, few brackets remain.
         rest = brackets.replace(b"[]", b"").replace(b"{}", b"")
         if self._level + 2 + len(rest) <= self._depth:
             return True
@@ -153,7 +151,7 @@ class _Survey:
             at = at if rest is None else rest.end()
         for found in _TOKENS.finditer(self._data, at, end):
             token = found.group()
-            # What an open bracket is followed by is its first value, unless that is the closing one.
+            # The token after an open bracket is its first value, unless it is the closing one.
             count += token == b"," or (opened is not None and token not in b"]}")
             if count > self._values:
                 place = found.end() if token == b"," else found.start()
@@ -164,12 +162,12 @@ class _Survey:
                 self._refuse(found.end(), BodyErrorKind.TOO_DEEP, f"nested deeper than {self._depth} levels")
 
     def _refuse(self, place: int, kind: BodyErrorKind, detail: str) -> NoReturn:
-        """Raises `BodyError` of this kind, unless the text is no JSON up to this place: that is found first."""
+        """Raises `BodyError` of this kind. Invalid JSON before this place takes precedence."""
         text = self._data[:place].decode("utf-8", "replace")
         try:
             _CHECKER.decode(text)
         except json.JSONDecodeError as error:
-            # The reader reports a text that is cut off.
+            # The reader reports a truncated text.
             if error.pos < len(text.rstrip(_SPACES)):
                 raise _bad_json(error) from None
         raise BodyError(kind, detail)
@@ -178,19 +176,19 @@ class _Survey:
 def _check_limits(data: bytes, depth: int, values: int) -> None:
     """Raises `BodyError` for a text that is nested too deeply, or holds too many values."""
     depth = min(depth, MAX_DEPTH)
-    # A value takes two bytes at least: itself, and what parts it from the next one.
+    # A value takes at least two bytes: one for itself and one for its separator.
     if len(data) > 2 * values or data.count(b"[") + data.count(b"{") > depth:
         _Survey(data, depth, values).check()
 
 
 def parse_text(text: str, depth: int = DEFAULT_DEPTH, values: int = DEFAULT_VALUES) -> Tree:
-    """The tree of a JSON text. Raises `BodyError`."""
+    """Returns the tree of a JSON text. Raises `BodyError`."""
     _check_limits(text.encode("utf-8", "surrogatepass"), depth, values)
     return _scan(text)
 
 
 def parse_body(data: bytes, depth: int = DEFAULT_DEPTH, values: int = DEFAULT_VALUES) -> Entries:
-    """The object that a body holds; an empty body stands for one without keys. Raises `BodyError`."""
+    """Returns the object in a body. An empty body means one without keys. Raises `BodyError`."""
     if not data:
         return Entries()
     try:
@@ -205,12 +203,12 @@ def parse_body(data: bytes, depth: int = DEFAULT_DEPTH, values: int = DEFAULT_VA
 
 
 def has_lone_surrogate(text: str) -> bool:
-    """Whether a text holds half of a surrogate pair, and so is not Unicode."""
+    """Returns `True` if a text has half of a surrogate pair, so it is not Unicode."""
     return not text.isascii() and _SURROGATE.search(text) is not None
 
 
 def write_text(text: str) -> str:
-    """A text in quotes."""
+    """Returns a text in quotes."""
     return encode_basestring(text)
 
 
@@ -241,7 +239,7 @@ def write_tree(tree: Tree, out: list[str]) -> None:
 
 
 def to_bytes(pieces: list[str]) -> bytes:
-    """JSON text for sending. Half a surrogate pair that has been kept is escaped again."""
+    """Returns JSON text as bytes. A kept half of a surrogate pair is escaped again."""
     text = "".join(pieces)
     try:
         return text.encode("utf-8")
@@ -262,17 +260,17 @@ def _plain(tree: Tree) -> Plain:
 
 
 class Json:
-    """A JSON value. Repeated keys and the spelling of numbers are kept; spaces and needless escapes are not."""
+    """A JSON value. It keeps repeated keys and the spelling of numbers, but not spaces and needless escapes."""
 
     __slots__ = ("_tree",)
 
     def __init__(self, text: str = "null") -> None:
-        """The value of a JSON text. Raises `BodyError` for what is none."""
+        """Creates the value from a JSON text. Raises `BodyError` for invalid text."""
         self._tree: Tree = parse_text(text)
 
     @classmethod
     def of(cls, value: Plain) -> Json:
-        """A value made of what Python has: `Json.of({"x": [1, None]})`. NaN and infinities raise `ValueError`."""
+        """Creates a value from Python values: `Json.of({"x": [1, None]})`. NaN and infinities raise `ValueError`."""
         try:
             return cls(json.dumps(value, allow_nan=False, ensure_ascii=False, separators=(",", ":")))
         except RecursionError:
@@ -280,107 +278,107 @@ class Json:
 
     @classmethod
     def of_tree(cls, tree: Tree) -> Json:
-        """A value that has been read already."""
+        """Creates a value from a tree."""
         made = cls.__new__(cls)
         made._tree = tree
         return made
 
     @property
     def tree(self) -> Tree:
-        """The value as it was read."""
+        """The tree."""
         return self._tree
 
     @property
     def text(self) -> str:
-        """Its compact text."""
+        """The compact text."""
         out: list[str] = []
         write_tree(self._tree, out)
         return "".join(out)
 
     @property
     def value(self) -> Plain:
-        """As `json.loads` would make it: of a key that comes twice, the last one counts."""
+        """The value as `json.loads` returns it: for a repeated key, the last value."""
         return _plain(self._tree)
 
     def __eq__(self, other: object) -> bool:
-        """True if both have the same text."""
+        """Returns `True` if both have the same text."""
         return isinstance(other, Json) and self.text == other.text
 
     def __hash__(self) -> int:
-        """By its text."""
+        """Returns the hash of its text."""
         return hash(self.text)
 
     def __repr__(self) -> str:
-        """As it can be made again."""
+        """Shows the expression that creates it."""
         return f"Json({quoted(self.text)!r})"
 
 
 class Extra:
-    """The unknown keys of an object, sent again in their order. `Json` describes what is kept of their values."""
+    """The unknown keys of an object, sent again in their order. `Json` describes the kept form of their values."""
 
     __slots__ = ("_entries",)
 
     def __init__(self, values: Mapping[str, Plain | Json] | None = None) -> None:
-        """No keys, or those of a mapping: `Extra({"note": "…"})`."""
+        """Creates an empty set of keys, or one from a mapping: `Extra({"note": "…"})`."""
         self._entries = Entries()
         for key, value in (values or {}).items():
             self[key] = value
 
     @classmethod
     def of_entries(cls, entries: Entries) -> Extra:
-        """Keys that have been read already."""
+        """Creates it from entries already read."""
         made = cls.__new__(cls)
         made._entries = entries
         return made
 
     @property
     def entries(self) -> Entries:
-        """All keys and values as they were read."""
+        """All keys and values as read."""
         return self._entries
 
     def __getitem__(self, key: str) -> Plain:
-        """The last value of a key."""
+        """Returns the last value of a key."""
         for name, tree in reversed(self._entries):
             if name == key:
                 return _plain(tree)
         raise KeyError(key)
 
     def get(self, key: str, default: Plain = None) -> Plain:
-        """The last value of a key, or the default."""
+        """Returns the last value of a key, or the default."""
         try:
             return self[key]
         except KeyError:
             return default
 
     def json(self, key: str) -> Json | None:
-        """The last value of a key, with its repeated keys and the spelling of its numbers."""
+        """Returns the last value of a key, with its repeated keys and the spelling of its numbers."""
         found = [tree for name, tree in self._entries if name == key]
         return Json.of_tree(found[-1]) if found else None
 
     def __setitem__(self, key: str, value: Plain | Json) -> None:
-        """Gives a key a value."""
+        """Sets the value of a key."""
         tree = value.tree if isinstance(value, Json) else Json.of(value).tree
         self._entries = Entries([entry for entry in self._entries if entry[0] != key])
         self._entries.append((key, tree))
 
     def __contains__(self, key: object) -> bool:
-        """True if this key has a value."""
+        """Returns `True` if this key has a value."""
         return any(name == key for name, _ in self._entries)
 
     def __iter__(self) -> Iterator[str]:
-        """The keys in their order; one that came twice comes twice."""
+        """Yields the keys in their order; a repeated key is yielded again."""
         return (name for name, _ in self._entries)
 
     def __len__(self) -> int:
-        """The number of keys."""
+        """Returns the number of keys."""
         return len(self._entries)
 
     def __bool__(self) -> bool:
-        """True if there are any keys."""
+        """Returns `True` if there are any keys."""
         return bool(self._entries)
 
     def __eq__(self, other: object) -> bool:
-        """Whether the other has the same keys and values in the same order."""
+        """Returns `True` if the other has the same keys and values in the same order."""
         if not isinstance(other, Extra):
             return False
         ours: list[str] = []
@@ -392,5 +390,5 @@ class Extra:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        """As it can be made again."""
+        """Shows the expression that creates it."""
         return f"Extra({quoted(repr({key: _plain(value) for key, value in self._entries}))})" if self else "Extra()"

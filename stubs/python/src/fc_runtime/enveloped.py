@@ -1,4 +1,4 @@
-"""Messages with the keys that every request and every response carries beside its own."""
+"""Messages together with the envelope's keys of requests and responses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ M = TypeVar("M", bound="Message")
 
 
 def write_with_envelope(envelope: Message, cls: type[M] | None, message: M | None) -> bytes:
-    """An envelope and a message of a type beside it; nothing beside it without a type. Raises `BodyError`."""
+    """Writes an envelope, with a message if there is a type. Raises `BodyError`."""
     out: list[str] = []
     separator = codec_of(type(envelope)).write(envelope, out)
     if cls is not None:
@@ -32,21 +32,21 @@ def _now_ms() -> int:
 
 
 def write_request(protocol: Protocol, cls: type[M], message: M) -> bytes:
-    """A request or report of a type as it is sent. Raises `BodyError`."""
+    """Writes a request or report of a type. Raises `BodyError`."""
     return write_with_envelope(_request_envelope(protocol), cls, message)
 
 
 def write_response(
     protocol: Protocol, result: ResultText, cls: type[M] | None = None, message: M | None = None
 ) -> bytes:
-    """A response of a type as it is sent, or an acknowledgement. Raises `BodyError`."""
+    """Writes a response of a type, or an acknowledgement. Raises `BodyError`."""
     return write_with_envelope(_response_envelope(protocol, result), cls, message)
 
 
 def read_with_envelope(
     envelope: type[Message], cls: type[M] | None, data: bytes, limits: Limits
 ) -> tuple[Message, M | BodyError | None]:
-    """The envelope, and the message or what is wrong with it. Raises `BodyError` where the envelope is wrong."""
+    """Returns the envelope, and the message or its error. Raises `BodyError` for an error in the envelope."""
     entries = parse_body(data, limits.json_depth, limits.json_values)
     outer = codec_of(envelope)
     inner: Codec[M] | None = None if cls is None else codec_of(cls)
@@ -82,7 +82,7 @@ def read_with_envelope(
 
 
 def read_request(protocol: Protocol, cls: type[M], data: bytes, limits: Limits) -> tuple[int | None, M]:
-    """When a request was made, in milliseconds since 1970, and the message. Raises `BodyError`."""
+    """Returns the time of a request, in milliseconds since 1970, and the message. Raises `BodyError`."""
     envelope, message = read_with_envelope(protocol.request_envelope, cls, data, limits)
     if isinstance(message, BodyError):
         raise message
@@ -92,7 +92,7 @@ def read_request(protocol: Protocol, cls: type[M], data: bytes, limits: Limits) 
 
 
 def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: Limits) -> M | None:
-    """The message of a response. Raises `Refusal` for a result other than success, and `BodyError`."""
+    """Returns the message of a response. Raises `Refusal` for a result other than success, and `BodyError`."""
     envelope, message = read_with_envelope(protocol.response_envelope, cls, data, limits)
     roles = protocol.response_roles
     code: int | None = getattr(envelope, roles.get("result_code", ""), None)
@@ -104,7 +104,7 @@ def read_response(protocol: Protocol, cls: type[M] | None, data: bytes, limits: 
 
 
 def write_raw_response(protocol: Protocol, result: ResultText, body: Json) -> bytes:
-    """A response with keys of its own that are not a message's. Raises `BodyError`."""
+    """Writes a response with keys that are not a message's. Raises `BodyError`."""
     envelope = _response_envelope(protocol, result)
     known = codec_of(type(envelope)).by_key
     own = Entries((key, tree) for key, tree in _entries_of(body) if key not in known)
@@ -112,7 +112,7 @@ def write_raw_response(protocol: Protocol, result: ResultText, body: Json) -> by
 
 
 def _entries_of(body: object) -> Entries:
-    """The keys of an object. Raises `BodyError` for what is none."""
+    """Returns the keys of an object. Raises `BodyError` for any other value."""
     if not isinstance(body, Json):
         raise BodyError(BodyErrorKind.WRONG_TYPE, f"Json is wanted, not {type(body).__name__}")
     if not isinstance(body.tree, Entries):
@@ -121,7 +121,7 @@ def _entries_of(body: object) -> Entries:
 
 
 def write_raw_request(protocol: Protocol, body: Json | None) -> bytes:
-    """A request with keys that are not a message's; the envelope is added where they have none of it."""
+    """Writes a request with keys that are not a message's. An absent envelope is added."""
     entries = Entries() if body is None else _entries_of(body)
     known = codec_of(protocol.request_envelope).by_key
     has_envelope = any(key in known for key, _ in entries)

@@ -1,4 +1,4 @@
-"""What can be wrong with a frame and with a body.
+"""Errors of frames and bodies.
 
 The names are those of `conformance/errors.json`, the same in every language.
 """
@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from .frame import FrameId
 
-# Longest quotation in a detail: what is quoted comes from the peer, and goes back to it.
+# Longest quotation in a detail. The quoted text comes from the peer, and goes back to it.
 _LONGEST_QUOTATION: Final = 200
 
 
 class BodyErrorKind(str, Enum):
-    """What is wrong with a body."""
+    """Errors of a body."""
 
     NOT_UTF8 = "not_utf8"
     """The bytes are not UTF-8."""
@@ -25,17 +25,17 @@ class BodyErrorKind(str, Enum):
     NOT_AN_OBJECT = "not_an_object"
     """The body is JSON, but not an object."""
     WRONG_TYPE = "wrong_type"
-    """A value of another kind than the field's."""
+    """A value of another type than the field's."""
     MISSING_FIELD = "missing_field"
     """A required key is missing."""
     DUPLICATE_KEY = "duplicate_key"
-    """A known key that comes twice in its object."""
+    """A known key is repeated in its object."""
     LONE_SURROGATE = "lone_surrogate"
-    """Half of a surrogate pair that stands alone in a text or key that is read."""
+    """Half of a surrogate pair without the other half, in a text or key."""
     OUT_OF_RANGE = "out_of_range"
     """A number outside its range, or a value of an enum that its field does not take."""
     BAD_LENGTH = "bad_length"
-    """A text, list or run of bytes of a length outside its constraint."""
+    """A text, list or byte string with a length outside its constraint."""
     BAD_PATTERN = "bad_pattern"
     """A text that does not match its pattern."""
     UNKNOWN_VALUE = "unknown_value"
@@ -51,43 +51,43 @@ class BodyErrorKind(str, Enum):
 
 
 class BodyError(ValueError):
-    """A body that could not be read, or that breaks its constraints."""
+    """The error of a body that cannot be read, or that breaks a constraint."""
 
     def __init__(self, kind: BodyErrorKind, detail: str) -> None:
-        """Says what was found and what is wanted; the path grows on the way out."""
+        """Creates the error. `detail` has the value found and the one expected. The path grows on the way out."""
         super().__init__(detail)
         self.kind: Final = kind
-        """What is wrong."""
+        """The kind of error."""
         self.detail: Final = detail
-        """What was found, and what is wanted."""
+        """The value found and the one expected."""
         self.path = ""
-        """The wire keys down to the place, such as `data.stations[3].x`; empty for the body as a whole."""
+        """The keys down to the place, such as `data.stations[3].x`; empty for the body itself."""
 
     @property
     def name(self) -> str:
-        """The kind's name, the same in every language."""
+        """Name of the kind, the same in every language."""
         return self.kind.value
 
     def inside(self, key: str | int) -> BodyError:
-        """The same error, one key or one item further out."""
+        """Returns the same error, with its path prefixed by one key or index."""
         here = f"[{key}]" if isinstance(key, int) else key
         separator = "" if not self.path or self.path.startswith("[") else "."
         self.path = here + separator + self.path
         return self
 
     def __str__(self) -> str:
-        """The path, the name and the detail."""
+        """Returns the path, the name and the detail."""
         place = f"`{self.path}`: " if self.path else ""
         return f"{place}{self.name}: {self.detail}"
 
 
 def quoted(text: str) -> str:
-    """The beginning of a text that may be long."""
+    """Returns the beginning of a text that may be long."""
     return text if len(text) <= _LONGEST_QUOTATION else text[:_LONGEST_QUOTATION] + "…"
 
 
 class FrameErrorKind(str, Enum):
-    """What is wrong with a frame."""
+    """Errors of a frame."""
 
     BAD_HEAD = "bad_head"
     """No frame starts here."""
@@ -116,19 +116,19 @@ class FrameErrorKind(str, Enum):
 
 
 class FrameError(ValueError):
-    """A frame that cannot be read or written."""
+    """The error of a frame that cannot be read or written."""
 
     def __init__(self, kind: FrameErrorKind, detail: str, frame: FrameId | None = None) -> None:
-        """Says what was found and what is wanted."""
+        """Creates the error. `detail` has the value found and the one expected."""
         super().__init__(f"{kind.value}: {detail}")
         self.kind: Final = kind
-        """What is wrong."""
+        """The kind of error."""
         self.detail: Final = detail
-        """What was found, and what is wanted."""
+        """The value found and the one expected."""
         self.frame: Final = frame
-        """Which frame it is, if its length can be trusted: the next one then begins behind it."""
+        """The frame, if its length is reliable: then the next one begins after it. Otherwise `None`."""
 
     @property
     def name(self) -> str:
-        """The kind's name, the same in every language."""
+        """Name of the kind, the same in every language."""
         return self.kind.value

@@ -1,4 +1,4 @@
-"""What a command has set off, followed to its end: the answer, and then the reports."""
+"""Follows a command to its end: the response, then the reports that it set off."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Going(Generic[P]):
     """The process goes on."""
 
     report: P
-    """What has been reported."""
+    """The report."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Ended(Generic[P]):
     """The process has ended with a final state. The last event."""
 
     report: P
-    """What has been reported."""
+    """The report."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Failed(Generic[P]):
     """The report means a failure. The last event."""
 
     report: P
-    """What has been reported."""
+    """The report."""
 
 
 Followed: TypeAlias = "Going[P] | Ended[P] | Failed[P] | Missed | Interrupted | Resumed"
@@ -54,10 +54,10 @@ Followed: TypeAlias = "Going[P] | Ended[P] | Failed[P] | Missed | Interrupted | 
 
 
 class FollowError(Exception):
-    """A process can be followed no further, although it may go on."""
+    """The error that ends following a process, although the process may go on."""
 
     name: ClassVar[str] = ""
-    """Its name, the same in every language."""
+    """Name of the error, the same in every language."""
 
 
 class FollowClosedError(FollowError):
@@ -66,33 +66,32 @@ class FollowClosedError(FollowError):
     name: ClassVar[str] = "closed"
 
     def __init__(self, loss: Loss) -> None:
-        """With the reason."""
+        """Creates the error with the reason."""
         super().__init__(f"the connection is closed: {loss}; the process may go on")
         self.loss: Final = loss
-        """Why there is no connection."""
+        """The reason for having no connection."""
 
 
 class FollowInvalidError(FollowError):
-    """A report does not read as its type says: the connection is one to a protocol of other types."""
+    """A report does not fit its type: the peer uses a protocol with other types."""
 
     name: ClassVar[str] = "invalid_report"
 
     def __init__(self, error: BodyError) -> None:
-        """With what is wrong."""
+        """Creates the error from the error in the report."""
         super().__init__(f"the report is invalid: {error}")
         self.error: Final = error
-        """What is wrong."""
+        """The error in the report."""
 
 
 class Following(Generic[R, P]):
-    """A command that has been answered, and the reports that it sets off.
+    """The response to a command, and the reports that it sets off, for `async for`.
 
-    Go through it with `async for`. It ends after `Ended` and `Failed`; where the protocol says neither which state is
-    the last nor which are failures, it goes on until it is closed. How long to wait for a report is for you to say,
-    such as with `asyncio.wait_for(following.recv(), …)`.
+    It ends after `Ended` and `Failed`. If the spec declares no final states and no failures, it continues until it is
+    closed. To limit the wait for a report, use `asyncio.wait_for(following.recv(), …)`, for example.
 
-    It has a queue of its own for reports of this code, which are acknowledged when they are in it; `async with`, or
-    `close()`, ends it. Where nothing in the messages ties a report to a call, it has every report of that code.
+    It has a separate queue for reports of this code, and they are acknowledged once queued. To end it, call `close()`
+    or use `async with`. If no fields tie a report to a call, it gets every report of that code.
     """
 
     def __init__(
@@ -106,12 +105,12 @@ class Following(Generic[R, P]):
         self._last: Any = None
         self._is_over = False
         self.answer: Final[R] = answer
-        """What the robot has answered to the command."""
+        """The robot's response to the command."""
 
     async def recv(self) -> Followed[P] | None:
-        """What comes next; `None` after the end. Raises `FollowError`.
+        """Returns the next event; `None` after the end. Raises `FollowError`.
 
-        It may be cancelled: a report is taken from the queue only when it is returned.
+        The call may be cancelled: a report is taken from the queue only when it is returned.
         """
         while not self._is_over:
             event = await self._receiver.next()
@@ -127,7 +126,7 @@ class Following(Generic[R, P]):
         return None
 
     def _place(self, raw: RawReport) -> Followed[P] | None:
-        """What a report means for the process; `None` if it belongs to another one."""
+        """Returns the event for a report; `None` if it belongs to another process."""
         described: Report[Any] = self._sets_off.report
         try:
             report: Any = self._connection.read_report(raw, described.request)
@@ -149,36 +148,36 @@ class Following(Generic[R, P]):
         return Going(report)
 
     def close(self) -> None:
-        """Follow no further."""
+        """Ends following."""
         self._is_over = True
         self._connection.leave(self._receiver)
 
     def __aiter__(self) -> Following[R, P]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __anext__(self) -> Followed[P]:
-        """What comes next."""
+        """Returns the next event."""
         event = await self.recv()
         if event is None:
             raise StopAsyncIteration
         return event
 
     async def __aenter__(self) -> Following[R, P]:
-        """Itself."""
+        """Returns itself."""
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Follow no further."""
+        """Ends following."""
         self.close()
 
 
 class Follow(Work["Following[R, P]"], Generic[R, P]):
-    """A command on its way to being followed: a coroutine, that can also be entered with `async with`.
+    """A command to be followed: a coroutine that also works with `async with`.
 
-    It calls the command and waits for its answer. Raises `CallError`; nothing is followed then.
+    It calls the command and waits for its response. Raises `CallError`, without following.
     """
 
     def __init__(self, call: Followable[R, Any], sets_off: SetsOff) -> None:
@@ -194,7 +193,7 @@ class Follow(Work["Following[R, P]"], Generic[R, P]):
         if code is None:
             raise ValueError(f"{self._sets_off.report.name} has no code yet")
         request = call.connection.asked(call.command, call.request)
-        # What comes from the moment on in which the request is sent, also before the answer.
+        # Receives from the moment the request is sent, also before the response.
         receiver = call.connection.receiver(frozenset({code}))
         try:
             answer = await call.connection.call(call.command, request, timeout=call.timeout, repeat=call.repeat)
@@ -204,22 +203,22 @@ class Follow(Work["Following[R, P]"], Generic[R, P]):
         return Following(call.connection, self._sets_off, receiver, request, answer)
 
     async def __aenter__(self) -> Following[R, P]:
-        """Call the command and wait for its answer."""
+        """Calls the command and waits for its response."""
         self._following = await self
         return self._following
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Follow no further."""
+        """Ends following."""
         if self._following is not None:
             self._following.close()
 
 
 class Followable(Work[R], Generic[R, P]):
-    """A call of a command that sets reports off: a coroutine with the answer alone, or `follow()` it to its end.
+    """A call of a command that sets off reports. Await it for the response, or `follow()` it to its end.
 
-    Nothing is sent before that.
+    The request is sent only then.
     """
 
     def __init__(
@@ -246,7 +245,7 @@ class Followable(Work[R], Generic[R, P]):
     def follow(self, report: Report[S]) -> Follow[R, S]: ...
 
     def follow(self, report: Report[Any] | None = None) -> Follow[R, Any]:
-        """Follow what it sets off instead; where that is more than one kind of report, say which."""
+        """Follows the reports that it sets off. `report` selects one if there is more than one kind."""
         if self.is_begun:
             raise RuntimeError(f"{self.command.name} has been called already: follow another call")
         sets_off = [one for one in self.command.sets_off if report is None or one.report is report]

@@ -1,4 +1,4 @@
-"""Frames: bytes to header and data, and back. The layout comes from the protocol; nothing of it is written here."""
+"""Frames: bytes to header and data, and back. The layout comes only from the protocol."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from .protocol import Limits, Protocol
     from .settings import Check
 
-# A search for the next frame that has looked at so many times the longest one without success is given up.
+# A search for the next frame ends after this many times the longest frame.
 _SEARCH: Final = 4
 
 
 class FrameId(NamedTuple):
-    """What tells a frame from others."""
+    """Identity of a frame."""
 
     response: bool
-    """Whether it answers another one."""
+    """`True` for a response or an acknowledgement."""
     kind: int
     """Kind of the data."""
     code: int
@@ -36,30 +36,30 @@ class FrameId(NamedTuple):
     """Message id."""
 
     def answer(self) -> FrameId:
-        """The id of what answers this frame."""
+        """Returns the id of the response to this frame."""
         return self._replace(response=True)
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A frame that has been received."""
+    """A received frame."""
 
     id: FrameId
-    """What tells it from others."""
+    """Its identity."""
     header: tuple[Any, ...]
     """All fields of the header as received, in order."""
     data: bytes = field(repr=False)
     """The data, decompressed."""
     fingerprint: bytes
-    """What tells its data from that of others."""
+    """Distinguishes its data from that of other frames."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gzip:
-    """When what is sent is compressed."""
+    """Settings for compressing sent data."""
 
     from_bytes: int = 1024
-    """Least length of the data that is compressed."""
+    """Least length of data to compress, in bytes."""
     level: int = 1
     """From 1, the fastest, to 9, the smallest."""
 
@@ -72,7 +72,7 @@ _GZIP: Final[Mapping[str, Check]] = {"from_bytes": integer(0), "level": integer(
 
 
 def digest(protocol: Protocol, data: bytes | memoryview) -> bytes:
-    """The digest that a header holds of data; empty if it holds none."""
+    """Returns the digest of data in a header; empty if the header has none."""
     layout = protocol.layout
     if layout.digest is Digest.MD5:
         return hashlib.md5(data, usedforsecurity=False).digest()
@@ -82,12 +82,12 @@ def digest(protocol: Protocol, data: bytes | memoryview) -> bytes:
 
 
 class Decoder:
-    """Takes frames out of received bytes. The order of its checks is part of the protocol."""
+    """Splits received bytes into frames. The order of its checks is part of the protocol."""
 
     def __init__(
         self, protocol: Protocol, limits: Limits | None = None, *, verify_digest: bool = True, resync: bool = False
     ) -> None:
-        """With the limits of the protocol, unless others are given."""
+        """Creates a decoder, by default with the limits of the protocol."""
         self._protocol: Final = protocol
         self._layout: Final = protocol.layout
         self._limits: Final = limits or protocol.defaults.limits
@@ -100,7 +100,7 @@ class Decoder:
         self._searching = False
         self._tried = 0
         self.surplus = 0
-        """Bytes that have come out of compressed data beyond those that went in."""
+        """Bytes of decompressed data beyond the compressed ones."""
 
     def push(self, data: bytes | bytearray | memoryview) -> None:
         """Appends received bytes."""
@@ -111,17 +111,17 @@ class Decoder:
 
     @property
     def pending(self) -> int:
-        """Bytes received and not yet given out as frames."""
+        """Number of received bytes not yet returned as frames."""
         return len(self._held) - self._at
 
     @property
     def header_length(self) -> int:
-        """Bytes of a header."""
+        """Length of a header, in bytes."""
         return self._layout.length
 
     @property
     def expected(self) -> int | None:
-        """How long the frame claims to be that has begun to arrive, if that has come already."""
+        """Length of the frame that has begun, from its header; `None` until that is known."""
         return self._total() if self.pending >= self._layout.total_end else None
 
     def _total(self) -> int:
@@ -129,10 +129,10 @@ class Decoder:
         return int(total)
 
     def next(self) -> Frame | None:
-        """The next whole frame; `None` if it has not arrived yet. Raises `FrameError`.
+        """Returns the next whole frame; `None` if it has not arrived yet. Raises `FrameError`.
 
-        If the error has a `frame`, that has been skipped, and the next call goes on behind it; otherwise every further
-        call raises it again.
+        An error with a `frame` concerns only that frame: the next call continues after it. Without one, every further
+        call raises the error again.
         """
         while True:
             if self._failed is not None:
@@ -172,7 +172,7 @@ class Decoder:
             raise FrameError(FrameErrorKind.TRUNCATED, f"the bytes end after {self.pending} of a frame")
 
     def _locate(self) -> int | None:
-        """Length of the frame at the front, if all of it is there."""
+        """Returns the length of the first frame, if all of it has arrived."""
         there = self.pending
         if there == 0:
             return None
@@ -190,11 +190,11 @@ class Decoder:
         return total if there >= total else None
 
     def _search(self) -> None:
-        """Goes on to where the next frame may begin."""
+        """Advances to the possible beginning of the next frame."""
         self._searching = True
         found = [self._held.find(head, self._at + 1) for head in self._heads]
         places = [place for place in found if place >= 0]
-        # The beginning of a head may be the last byte.
+        # The last bytes may be the beginning of a head.
         end = len(self._held)
         tail = next(
             (place for place in range(max(self._at + 1, end - 8), end) if self._may_begin(place)),
@@ -243,7 +243,7 @@ class Decoder:
         return Frame(frame, header, data, bytes(fingerprint))
 
     def _inflate(self, data: bytes, plain_length: int, frame: FrameId) -> bytes:
-        """The content of one gzip member, never more of it than is announced and the limits allow."""
+        """Returns the content of one gzip member, at most as long as announced and as the limits allow."""
         most = self._limits.inflated_bytes
         if plain_length > most:
             raise FrameError(FrameErrorKind.INFLATED_TOO_LONG, f"{plain_length} bytes; at most {most}", frame)
@@ -262,7 +262,7 @@ class Decoder:
             raise FrameError(FrameErrorKind.BAD_GZIP, str(error), frame) from None
         self.surplus += max(0, len(plain) - len(data))
         if len(plain) > plain_length >= 0:
-            # Whatever follows is not looked at.
+            # The rest is not read.
             detail = f"{plain_length} bytes are announced, and there are more"
             raise FrameError(FrameErrorKind.PLAIN_LENGTH_MISMATCH, detail, frame)
         if len(plain) > allowed:
@@ -274,14 +274,16 @@ class Decoder:
 
 
 def stream_frame(protocol: Protocol, code: int, message_id: int) -> FrameId:
-    """The id of a frame of raw bytes. Raises `TypeError` and `ValueError` for what its header cannot hold."""
+    """Returns the id of a frame of raw bytes. Raises `TypeError` and `ValueError` for values that do not fit the
+    header.
+    """
     protocol.layout.check_code("code", code)
     protocol.layout.check_id("message_id", message_id)
     return FrameId(False, protocol.stream, code, message_id)
 
 
 def frame_bytes(data: bytes | bytearray | memoryview) -> bytes:
-    """The bytes of a frame of raw bytes. Raises `TypeError` for what is none."""
+    """Returns the data of a frame of raw bytes. Raises `TypeError` for any other value."""
     given = cast("object", data)
     if not isinstance(given, (bytes, bytearray, memoryview)):
         raise TypeError(wrong("data", given, "bytes"))
@@ -289,10 +291,10 @@ def frame_bytes(data: bytes | bytearray | memoryview) -> bytes:
 
 
 class Encoder:
-    """Makes frames around data."""
+    """Encodes frames."""
 
     def __init__(self, protocol: Protocol, limits: Limits | None = None, *, compress: Gzip | None = None) -> None:
-        """With the limits of the protocol, unless others are given."""
+        """Creates an encoder, by default with the limits of the protocol."""
         self._protocol: Final = protocol
         self._layout: Final = protocol.layout
         self._most: Final = (limits or protocol.defaults.limits).frame_bytes
@@ -304,7 +306,7 @@ class Encoder:
         ]
 
     def prepare(self, data: bytes) -> Prepared:
-        """Packs and digests data, so that frames can be made of it again and again. Raises `FrameError`."""
+        """Compresses and digests data, for one or more frames. Raises `FrameError`."""
         packed, is_packed = data, False
         if self._gzip is not None and len(data) >= self._gzip.from_bytes:
             member = gzip.compress(data, self._gzip.level, mtime=0)
@@ -316,7 +318,7 @@ class Encoder:
         return Prepared(packed, is_packed, len(data), digest(self._protocol, packed))
 
     def frame(self, frame: FrameId, prepared: Prepared) -> bytes:
-        """The frame of this id around what has been prepared."""
+        """Returns the frame with this id and the prepared data."""
         layout, protocol = self._layout, self._protocol
         values: list[Any] = self._fixed.copy()
         values[layout.head_index] = protocol.response_head if frame.response else protocol.request_head
@@ -336,18 +338,18 @@ class Encoder:
         return layout.struct.pack(*values) + prepared.data
 
     def encode(self, frame: FrameId, data: bytes) -> bytes:
-        """The frame around data. Raises `FrameError`."""
+        """Returns the frame with this data. Raises `FrameError`."""
         return self.frame(frame, self.prepare(data))
 
 
 class Prepared(NamedTuple):
-    """Data as it is sent."""
+    """Data prepared for sending."""
 
     data: bytes
-    """Compressed, if that is shorter."""
+    """The data, compressed if that is shorter."""
     is_packed: bool
-    """Whether it is compressed."""
+    """`True` if it is compressed."""
     plain_length: int
-    """Its length before that."""
+    """Length before compression."""
     digest: bytes
-    """What the header says of it."""
+    """Its digest in the header."""

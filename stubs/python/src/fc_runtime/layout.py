@@ -1,4 +1,4 @@
-"""The layout of a frame's header: names and bytes, made of what the protocol says."""
+"""The layout of a frame's header: field names and bytes, from the protocol."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .settings import integer
 
 
 class HeaderRole(str, Enum):
-    """What a header field is for."""
+    """Role of a header field."""
 
     HEAD = "head"
     """The bytes that open the frame."""
@@ -22,7 +22,7 @@ class HeaderRole(str, Enum):
     ID = "id"
     """Message id."""
     ENCODING = "encoding"
-    """How the data is packed."""
+    """Encoding of the data."""
     STATUS = "status"
     """Sent with a fixed value, kept as received."""
     TOTAL_LENGTH = "total_length"
@@ -34,7 +34,7 @@ class HeaderRole(str, Enum):
 
 
 class Digest(str, Enum):
-    """How the data of a frame is digested."""
+    """Digest algorithm of a frame's data."""
 
     MD5 = "md5"
     """MD5 (RFC 1321)."""
@@ -51,31 +51,31 @@ class HeaderField:
     size: int
     """Its number of bytes."""
     role: HeaderRole | None = None
-    """What it is for; `None` if it has a fixed value."""
+    """Role of the field; `None` if it has a fixed value."""
     is_bytes: bool = False
-    """Bytes as they come; otherwise an unsigned integer."""
+    """`True` for raw bytes, `False` for an unsigned integer."""
     value: int = 0
-    """Sent where no role decides."""
+    """Value sent for a field without a role."""
     digest: Digest | None = None
-    """How a digest is computed."""
+    """Digest algorithm."""
     zero_when_plain: bool = False
-    """A received 0 on a frame that is not compressed is accepted."""
+    """A received 0 on an uncompressed frame is accepted."""
 
 
 _INTEGERS: Final = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
 class Layout:
-    """Where each field of the header stands."""
+    """Places of the header's fields."""
 
     def __init__(self, header: tuple[HeaderField, ...], byte_order: str) -> None:
-        """Works out places and formats."""
+        """Computes places and formats."""
         order = ">" if byte_order == "big" else "<"
         formats = [f"{one.size}s" if one.is_bytes else _INTEGERS[one.size] for one in header]
         self.fields: Final = header
         self.struct: Final = struct.Struct(order + "".join(formats))
         self.length: Final = self.struct.size
-        """Bytes of the header."""
+        """Length of the header, in bytes."""
         self._index: Final = {one.role: index for index, one in enumerate(header) if one.role is not None}
         total = self.total_index = self._index[HeaderRole.TOTAL_LENGTH]
         self.head_index: Final = self._index[HeaderRole.HEAD]
@@ -97,7 +97,7 @@ class Layout:
         """Largest message id."""
         code_max = None if self.code_at is None else (1 << (8 * header[self.code_at].size)) - 1
         self.check_code: Final = integer(0, code_max)
-        """Checks a command code, by what the header has room for."""
+        """Checks that a command code fits the header."""
         self.check_id: Final = integer(0, self.id_max)
-        """Checks a message id, by what the header has room for."""
+        """Checks that a message id fits the header."""
         self.zero_when_plain: Final = any(one.zero_when_plain for one in header)

@@ -1,4 +1,4 @@
-"""Whether there is a connection, for all who wait for another state of it."""
+"""The state of a connection, with tasks that wait for a change."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ class Life:
     """The state of a connection."""
 
     def __init__(self) -> None:
-        """The first connection is still to be made."""
+        """Creates the state before the first connection."""
         self.state: ConnectionState = Connecting(0, Loss(LossKind.NOT_YET))
-        """The state at this moment."""
+        """The present state."""
         self._watchers: Final[set[asyncio.Future[None]]] = set()
 
     @property
     def is_closed(self) -> bool:
-        """Whether there will be no connection any more."""
+        """`True` if there will be no connection any more."""
         return isinstance(self.state, Closed)
 
     def turn(self, state: ConnectionState) -> None:
-        """Come to another state; none follows `Closed`."""
+        """Changes to another state; `Closed` is the last."""
         if not self.is_closed:
             self.state = state
             for watcher in self._watchers:
@@ -37,7 +37,7 @@ class Life:
                     watcher.set_result(None)
 
     async def states(self) -> AsyncIterator[ConnectionState]:
-        """The present state, and each that it comes to; nothing after `Closed`. Nothing is queued."""
+        """Yields the present state, then each change; `Closed` is the last. A slow reader gets the latest."""
         seen: ConnectionState | None = None
         while True:
             if self.state != seen:
@@ -54,7 +54,7 @@ class Life:
                     self._watchers.discard(changed)
 
     async def closed(self) -> Loss:
-        """Wait until the connection has ended for good, and say why."""
+        """Waits until the connection has ended for good. Returns the reason."""
         async for state in self.states():
             if isinstance(state, Closed):
                 return state.why

@@ -1,4 +1,4 @@
-"""A connection's bytes: frames out of what is received, and what is sent in one write."""
+"""The bytes of a connection: splits received ones into frames, and joins frames to send into one write."""
 
 from __future__ import annotations
 
@@ -21,37 +21,37 @@ Dial: TypeAlias = (
 )
 """Makes a connection, as `loop.create_connection` does: over TLS, or over a pipe."""
 
-# What a frame has to bring to an app beside the stall timeout, in bytes per second: a wrong length swallows what
-# follows.
+# Least rate of a frame to an app, in bytes per second, after a grace of one stall timeout: a wrong length swallows the
+# frames after it.
 _EARNED: Final = 16 * 1024
-# After so many frames the others have their turn, and what has been answered goes out while the rest is read.
+# Frames handled in one turn. Then other connections run, and responses go out while the rest is read.
 _TURN: Final = 16
-# Frames are written together up to so many bytes. Longer ones are written one by one, for joining copies them.
+# Most bytes of frames joined into one write. Longer ones are written separately, since joining copies them.
 _TOGETHER: Final = 64 * 1024
-# How long the other side may take over its goodbye.
+# Time the other side may take to close its half.
 _CLOSING: Final = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Patience:
-    """What has to come, or go, in time. Times are in seconds."""
+    """Timeouts of a connection, in seconds."""
 
     stall: float
-    """Without progress inside a frame, or while the other side does not read."""
+    """Time without progress inside a frame, or while the other side does not read."""
     header: float | None = None
-    """For a header, from its first byte to its last."""
+    """Time for a header, from its first byte to its last."""
     least_rate: int = 0
-    """Fewer bytes per second than this, over a `stall`, are no progress."""
+    """Least bytes per second that count as progress, averaged over `stall`."""
     idle: float | None = None
-    """Of silence between frames."""
+    """Silence allowed between frames."""
     earns: bool = False
-    """Whether a frame may take `stall` in all, and longer only for what has come of it."""
+    """A frame may take `stall` in all, and longer only at the least rate."""
     keepalive: float | None = None
-    """TCP asks after so much silence."""
+    """Silence before TCP probes."""
 
 
 class Link(asyncio.Protocol):
-    """Frames of one connection. Its owner is told of each, of each that is broken, and of the end."""
+    """Frames of one connection. Calls its owner back for each frame, each invalid one, and the end."""
 
     def __init__(
         self,
@@ -66,7 +66,7 @@ class Link(asyncio.Protocol):
         *,
         reads_when_full: bool = True,
     ) -> None:
-        """With what its owner wants to be told, and what it is asked."""
+        """Creates the link with its owner's callbacks."""
         self._decoder: Final = decoder
         self._patience: Final = patience
         self._on_frame: Final = on_frame
@@ -91,21 +91,21 @@ class Link(asyncio.Protocol):
         self._write_watch: asyncio.TimerHandle | None = None
         self._idle_watch: asyncio.TimerHandle | None = None
         self._goodbye: asyncio.TimerHandle | None = None
-        # The frame that arrives: when it began, and since when enough of it has not come.
+        # Times of the present frame: its beginning, and the last sufficient progress.
         self._begun = self._flow_since = self._last_frame = 0.0
         self._flow = 0
-        # What the other side has been sent, and what of that it had taken when that was enough.
+        # Bytes sent, and bytes taken by the other side at the last sufficient progress.
         self._handed = self._taken = 0
         self._taken_since = 0.0
         self.is_full = False
-        """Whether the other side does not take what is sent."""
+        """`True` if the other side does not take sent bytes."""
         self._writable: Final[set[asyncio.Future[None]]] = set()
         self.gone: Final[asyncio.Future[None]] = self._loop.create_future()
         """Done once the transport is closed."""
         self.is_heard = False
-        """Whether a frame has come."""
+        """`True` once a frame has been received."""
         self.received = 0
-        """Bytes that have come."""
+        """Number of bytes received."""
 
     @property
     def peer(self) -> str:
@@ -115,22 +115,22 @@ class Link(asyncio.Protocol):
 
     @property
     def sent(self) -> int:
-        """Bytes handed over to be sent."""
+        """Number of bytes handed over for sending."""
         return self._handed
 
     @property
     def surplus(self) -> int:
-        """Bytes that have come out of compressed data beyond those that went in, since this was last asked."""
+        """Bytes of decompressed data beyond the compressed ones, since the last query."""
         surplus, self._decoder.surplus = self._decoder.surplus, 0
         return surplus
 
     @property
     def held(self) -> int:
-        """Bytes that have come and make no frame yet, and those that the other side has not taken."""
+        """Bytes of an incomplete frame, and bytes that the other side has not taken."""
         return self._decoder.pending + self.unsent
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Take over a transport."""
+        """Takes over a transport."""
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
         found = transport.get_extra_info("socket")
@@ -142,18 +142,18 @@ class Link(asyncio.Protocol):
                     found.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), max(1, value))
         self._last_frame = self._loop.time()
         self._watch_idle()
-        # Python 3.10 begins to read behind this, also where reading has been paused here.
+        # Python 3.10 starts reading after this callback, even if reading was paused here.
         self._loop.call_soon(self._start)
         if self._on_made is not None:
             self._on_made(self)
 
     def fill_nothing(self) -> None:
-        """Count as full as soon as the socket does not take what is sent, for `drained`."""
+        """Makes `drained` wait until the socket has taken all bytes."""
         if self._transport is not None:
             self._transport.set_write_buffer_limits(high=0)
 
     def data_received(self, data: bytes) -> None:
-        """Take what has come."""
+        """Takes received bytes."""
         if self._is_over:
             return
         now = self._loop.time()
@@ -173,7 +173,7 @@ class Link(asyncio.Protocol):
         self._flow = 0
 
     def take(self) -> None:
-        """Give out whole frames, as long as they are looked at."""
+        """Handles whole frames, as long as the owner does not hold the link."""
         if self._next_turn is None:
             self._take()
 
@@ -183,7 +183,7 @@ class Link(asyncio.Protocol):
         while not self._holds and not self._is_over:
             if left == 0:
                 self._next_turn = self._loop.call_soon(self._take)
-                # The next turn may be faster to come than the frames of this one are handled.
+                # The next turn may come before the frames of this one are handled.
                 self._read_or_rest()
                 return
             left -= 1
@@ -250,21 +250,21 @@ class Link(asyncio.Protocol):
             self.end("idle", None)
             return
         if last_frame == self._last_frame:
-            # What it is at counts as something that happens.
+            # A running request counts as activity.
             self._last_frame = self._loop.time()
         self._watch_idle()
 
     def eof_received(self) -> bool:
-        """Take note that the other side sends no more."""
+        """Notes that the other side sends no more."""
         if self._is_over:
             return False
         self._is_at_end = True
         self.take()
-        # TLS has no half of a connection: there it is over.
+        # TLS cannot close one half: there the connection is over.
         return self._transport is not None and self._transport.get_extra_info("sslcontext") is None
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Take note that the connection is over."""
+        """Notes that the connection is over."""
         self.end("closed" if exc is None else "broken", exc)
         if self._goodbye is not None:
             self._goodbye.cancel()
@@ -273,7 +273,7 @@ class Link(asyncio.Protocol):
             self.gone.set_result(None)
 
     def end(self, why: str, error: Exception | None) -> None:
-        """Tell the owner of the end, once. The transport stays open until `close`."""
+        """Calls the owner back with the end, once. The transport stays open until `close`."""
         if self._is_over:
             return
         self._stop()
@@ -286,13 +286,13 @@ class Link(asyncio.Protocol):
                 timer.cancel()
 
     def pause_writing(self) -> None:
-        """Take note that the other side does not take what is sent."""
+        """Notes that the other side does not take sent bytes."""
         self.is_full = True
         if not self._reads_when_full:
             self.hold("full")
 
     def resume_writing(self) -> None:
-        """Take note that it does again."""
+        """Notes that it takes them again."""
         self.is_full = False
         self.let_go("full")
         self._stop_waiting()
@@ -303,7 +303,7 @@ class Link(asyncio.Protocol):
                 waiting.set_result(None)
 
     async def drained(self) -> bool:
-        """Wait until there is room to send; false if the connection is over."""
+        """Waits until there is room to send. Returns `False` if the connection is over."""
         self.flush()
         while self.is_full and not self.gone.done():
             waiting: asyncio.Future[None] = self._loop.create_future()
@@ -315,21 +315,21 @@ class Link(asyncio.Protocol):
         return not self.gone.done()
 
     def hold(self, why: str) -> None:
-        """Look at no more frames, and read no more, until all who have held it have let go."""
+        """Stops reading and handling frames, until each reason has been let go."""
         self._holds.add(why)
         self._read_or_rest()
         if self._watch is not None:
             self._watch.cancel()
 
     def let_go(self, why: str) -> None:
-        """Go on where `hold` has stopped."""
+        """Removes a reason to hold."""
         if why not in self._holds:
             return
         self._holds.discard(why)
         if self._holds:
             return
         self._read_or_rest()
-        # What could not come meanwhile is not missed.
+        # Time spent on hold does not count as a stall.
         self._begin(self._loop.time())
         self._loop.call_soon(self.take)
 
@@ -338,7 +338,7 @@ class Link(asyncio.Protocol):
         self._read_or_rest()
 
     def _read_or_rest(self) -> None:
-        """Read while nobody holds it, and while nothing waits to be looked at: what has come is bounded by that."""
+        """Reads only while the link is not on hold and no frames wait, which bounds the received bytes."""
         wants = not self._holds and self._next_turn is None
         if wants == self._is_reading or not self._is_started or self._transport is None:
             return
@@ -352,22 +352,22 @@ class Link(asyncio.Protocol):
 
     @property
     def unsent(self) -> int:
-        """Bytes that the other side has not taken yet."""
+        """Number of bytes that the other side has not taken yet."""
         waiting = 0 if self._transport is None else self._transport.get_write_buffer_size()
         return waiting + self._out_bytes
 
     def send(self, data: bytes) -> None:
-        """Send bytes, together with those that follow in the same turn of the event loop."""
+        """Sends bytes, together with others of the same turn of the event loop."""
         if not self._out:
             self._loop.call_soon(self.flush)
         self._out.append(data)
         self._out_bytes += len(data)
-        # The owner may close the link for what it holds.
+        # The owner may close the link if it holds too many bytes.
         if self._on_bytes is not None:
             self._on_bytes(0, len(data))
 
     def flush(self) -> None:
-        """Hand over what is to be sent."""
+        """Hands the queued bytes to the transport."""
         out, size = self._out, self._out_bytes
         self._out, self._out_bytes = [], 0
         if not out or self._transport is None or self._transport.is_closing():
@@ -379,7 +379,7 @@ class Link(asyncio.Protocol):
             out = [b"".join(out)]
         out.reverse()
         while out:
-            # The transport may copy what it takes: nothing is held twice for long.
+            # The transport may copy bytes, so they are released one by one.
             self._transport.write(out.pop())
         self._watch_writing()
 
@@ -404,20 +404,20 @@ class Link(asyncio.Protocol):
         self._watch_writing()
 
     def _end_goodbye(self) -> None:
-        """Wait no longer, unless there is still something to be sent: that has its own time."""
+        """Ends waiting for the other side. Unsent bytes have a separate timeout."""
         if self._transport is None or self._transport.get_write_buffer_size() == 0:
             self.abort()
         else:
             self._goodbye = self._loop.call_later(_CLOSING, self._end_goodbye)
 
     def abort(self) -> None:
-        """Close the transport, whatever is still to be sent."""
+        """Closes the transport without sending the rest."""
         self._stop()
         if self._transport is not None:
             self._transport.abort()
 
     def close(self, *, at_once: bool = False) -> None:
-        """Send what is left, unless at once, and close the transport."""
+        """Sends the rest, unless `at_once`, and closes the transport."""
         self._stop()
         transport = self._transport
         if at_once:
@@ -429,11 +429,11 @@ class Link(asyncio.Protocol):
         if transport is None or transport.is_closing():
             return
         if not self._is_at_end and transport.can_write_eof():
-            # To close with something unread resets the connection, and what was sent may be lost with it.
+            # Closing with unread bytes resets the connection, and sent bytes may be lost with it.
             try:
                 transport.write_eof()
             except OSError:
-                # The other side has reset the connection, and the loop has not seen it yet.
+                # The other side has reset the connection, and the event loop has not noticed yet.
                 transport.abort()
                 return
             if not self._is_reading:
@@ -444,7 +444,7 @@ class Link(asyncio.Protocol):
 
 
 async def dialled(dial: Dial, link: Link, seconds: float) -> Loss | None:
-    """Connects a link. Returns why there is no connection, if there is none."""
+    """Connects a link. Returns the loss if that fails."""
     try:
         await within(seconds, dial(lambda: link))
     except asyncio.CancelledError:

@@ -1,7 +1,7 @@
-"""Messages: plain dataclasses whose annotations say how each field travels.
+"""Messages: plain dataclasses with annotations for reading and writing each field.
 
-A field is named once: its annotation has its type and its `Key`. Reader, writer, constraints and unknown keys are made
-of that by `fc_runtime.codec`.
+A field is named once: its annotation has its type and its `Key`. `fc_runtime.codec` derives the reader, the writer,
+constraints and unknown keys from that.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ M = TypeVar("M", bound="Message")
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """What kind of number an annotation means."""
+    """A type of numbers in an annotation."""
 
     name: str
     """Its name in the spec."""
@@ -72,45 +72,45 @@ SCALARS: Final[Mapping[str, Scalar]] = {
     scalar.name: scalar
     for scalar in [*map(_signed, (8, 16, 32, 64)), *map(_unsigned, (8, 16, 32, 64)), Scalar("f32"), Scalar("f64")]
 }
-"""All kinds of numbers by their names in the spec."""
+"""All types of numbers, by their names in the spec."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unknown(Generic[W]):
-    """A value that an open enum does not know: kept, and sent again unchanged."""
+    """A value that an open enum does not declare: kept, and sent again unchanged."""
 
     value: W
-    """As it travels."""
+    """The value as received."""
 
     @property
     def name(self) -> str | None:
-        """The protocol has no name for it."""
+        """`None`: the protocol has no name for it."""
         return None
 
     @property
     def is_final(self) -> bool:
-        """Nothing is known of it as a state."""
+        """`False`: it is not a known state."""
         return False
 
     @property
     def is_error(self) -> bool:
-        """Nothing is known of it as a state."""
+        """`False`: it is not a known state."""
         return False
 
     def normally_follows(self, previous: object) -> bool:
-        """Nothing is known of it as a state."""
+        """Returns `False`: it is not a known state."""
         return False
 
     def may_follow(self, previous: object) -> bool:
-        """Nothing is known of it as a state, so it may."""
+        """Returns `True`: it is not a known state."""
         return True
 
 
 class Form(Enum):
-    """How a value travels that has another form than its type's own."""
+    """Forms of a value in JSON."""
 
     PLAIN = "plain"
-    """As its type does."""
+    """The form of its type."""
     STRING = "string"
     """A number or bool inside a JSON string."""
     NUMBER = "number"
@@ -118,19 +118,19 @@ class Form(Enum):
 
 
 Condition: TypeAlias = "Mapping[str, Sequence[int | str | bool | Enum]]"
-"""Values by the wire keys of the fields beside: each of these has one of its values."""
+"""Values by the keys of neighbouring fields: each field must have one of its values."""
 
 
 @dataclass(frozen=True, slots=True)
 class Key(Constraints):
-    """How a field travels, and what is demanded of its values."""
+    """Key and form of a field, with its constraints."""
 
     name: str
     """Its wire key."""
     also: tuple[str, ...] = ()
     """Other keys under which it is accepted."""
     form: Form = Form.PLAIN
-    """How it travels."""
+    """Form in JSON."""
     lenient_number: bool = False
     """A number is also accepted as a string, and in hex."""
     lenient_bool: bool = False
@@ -138,31 +138,31 @@ class Key(Constraints):
     empty_is_absent: bool = False
     """An empty value counts as absent."""
     when: Condition | None = None
-    """It is there exactly where this holds."""
+    """The field is present exactly when this condition holds."""
     unless: Condition | None = None
-    """It is there everywhere but where this holds."""
+    """The field is present exactly when this condition does not hold."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variants:
-    """Marks a choice: an object of the first of these forms whose required keys are all there."""
+    """Marks a choice: the first form whose required keys are all present applies."""
 
     names: tuple[str, ...]
-    """What the forms are called in the spec."""
+    """Names of the forms in the spec."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Process:
-    """What the protocol says of the values of an enum as states."""
+    """The spec's facts about the values of an enum as states."""
 
     normal: Mapping[Enum, Sequence[Enum]] | None = None
-    """Which values normally follow each; any other change may occur as well."""
+    """For each value, the values that normally follow; other changes may occur."""
     complete: Mapping[Enum, Sequence[Enum]] | None = None
-    """Which values follow each: every change there is."""
+    """For each value, all values that may follow."""
     final: Sequence[Enum] = ()
-    """Values that nothing follows."""
+    """Final values."""
     error: Sequence[Enum] = ()
-    """Values that say that something failed."""
+    """Values that mean a failure."""
 
 
 class State(Enum):
@@ -216,7 +216,7 @@ def is_in_order(state: State | Unknown[Any], previous: State | Unknown[Any]) -> 
 
 
 def wire_enum(scalar: str, *, is_open: bool = True) -> Callable[[type[E]], type[E]]:
-    """Says how the values of an enum travel: `string`, or the name of an integer type."""
+    """Declares the type of an enum's values in JSON: `string`, or the name of an integer type."""
 
     def mark(cls: type[E]) -> type[E]:
         _WIRE_ENUMS[cls] = (SCALARS.get(scalar), is_open)
@@ -229,7 +229,7 @@ _WIRE_ENUMS: Final[dict[type[Enum], tuple[Scalar | None, bool]]] = {}
 
 
 def wire_of(cls: type[Enum]) -> tuple[Scalar | None, bool]:
-    """The integer type of an enum's values, `None` for texts; and whether it is open."""
+    """Returns the integer type of an enum's values, `None` for texts; and `True` if it is open."""
     return _WIRE_ENUMS[cls]
 
 
@@ -247,11 +247,11 @@ class Message:
     __example__: ClassVar[str] = "{}"
 
     extra: Extra
-    """Keys that the protocol does not know, kept and sent again."""
+    """Keys that the spec does not declare, kept and sent again."""
 
     @classmethod
     def example(cls: type[M]) -> M:
-        """The example of the spec."""
+        """Returns the example of the spec."""
         return _codec_of(cls).read_text(cls.__example__)
 
     @classmethod
@@ -260,7 +260,7 @@ class Message:
         return _codec_of(cls).read_text(text)
 
     def to_json(self) -> str:
-        """Its compact JSON text. Raises `BodyError` if a constraint does not hold."""
+        """Returns its compact JSON text. Raises `BodyError` if a constraint does not hold."""
         return _codec_of(type(self)).write_text(self)
 
     def validate(self) -> None:
@@ -268,9 +268,10 @@ class Message:
         _codec_of(type(self)).write_text(self)
 
     def checked(self: M) -> M:
-        """The same message, if each field that is there only under a condition is there exactly where that holds.
+        """Returns the message if each field with a condition is present exactly where that holds.
 
-        A message that is sent or received is not asked; nor are the messages inside this one. Raises `ConditionError`.
+        Messages that are sent or received are not checked, nor are the messages inside this one. Raises
+        `ConditionError`.
         """
         _codec_of(type(self)).check_conditions(self)
         return self

@@ -1,4 +1,4 @@
-"""Numbers of JSON, exactly: an integer stays one whatever its spelling, a float is the nearest of its type."""
+"""Exact numbers of JSON: an integer in any spelling, and the nearest float of a type."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ _NUMBER: Final = re.compile(r"(-?)([0-9]+)(?:\.([0-9]+))?(?:[eE]([+-]?[0-9]+))?"
 _SPELLED: Final = re.compile(r"-?(?:0|[1-9][0-9]*)(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?", re.ASCII)
 _HEX: Final = re.compile(r"0[xX][0-9a-fA-F]+", re.ASCII)
 
-# Digits that no integer type has, by far. What is beyond comes out as some number that is, too.
+# Far more digits than any integer type needs. A number beyond yields another number that is also outside.
 _MANY_DIGITS: Final = 40
 _FAR: Final = 10**_MANY_DIGITS
-# Python refuses to make an int of more digits than this, and nobody sends such an exponent in earnest.
+# Python refuses to make an int of more digits, and no sensible peer sends such an exponent.
 _LONG_EXPONENT: Final = 1000
 
-# Half-way between the largest float of 32 bits and the one that would come next.
+# Half-way between the largest 32-bit float and the next power of two.
 _PAST_THE_LARGEST: Final = 2.0**128 - 2.0**103
 
 
 def is_number(text: str) -> bool:
-    """Whether a text is spelled as a number of JSON."""
+    """Returns `True` if a text is a JSON number."""
     return _SPELLED.fullmatch(text) is not None
 
 
 def hexadecimal(text: str) -> int | None:
-    """The number that `0x…` stands for; `None` for any other text."""
+    """Returns the number of a text `0x…`; `None` for any other text."""
     if _HEX.fullmatch(text) is None:
         return None
     digits = text[2:].lstrip("0")
@@ -35,7 +35,7 @@ def hexadecimal(text: str) -> int | None:
 
 
 def integral(text: str) -> int | None:
-    """The integer that a number amounts to: `1.0` and `1e2` are integers. `None` for a fraction."""
+    """Returns the integer value of a number: `1.0` and `1e2` are integers. `None` for a fraction."""
     if len(text) <= _MANY_DIGITS and (text.isdigit() or text[1:].isdigit()):
         return int(text)
     found = _NUMBER.fullmatch(text)
@@ -57,15 +57,15 @@ def integral(text: str) -> int | None:
 
 
 def nearest_double(text: str) -> float | None:
-    """The nearest double; `None` where none is large enough."""
+    """Returns the nearest double; `None` if the number is too large."""
     value = float(text)
     return None if value in (float("inf"), float("-inf")) else value
 
 
 def nearest_float(text: str) -> float | None:
-    """The nearest float of 32 bits; `None` where none is large enough.
+    """Returns the nearest 32-bit float; `None` if the number is too large.
 
-    To round to a double first may round twice: half-way between two floats the text itself decides.
+    Rounding to a double first would round twice. Half-way between two floats the text decides.
     """
     value = float(text)
     if _is_half_way(value):
@@ -80,17 +80,17 @@ def nearest_float(text: str) -> float | None:
 
 
 def _is_half_way(value: float) -> bool:
-    """Whether a double is exactly half-way between two floats of 32 bits."""
+    """Returns `True` if a double is exactly half-way between two 32-bit floats."""
     nearest = single(value)
     if nearest is None:
         return abs(value) == _PAST_THE_LARGEST
-    # As far on the other side as the nearest is on this one: closer than half-way, no float is there.
+    # `other` is as far away as `nearest`, on the other side. If it is not a float, the value is not half-way.
     other = 2 * value - nearest
     return nearest != value and single(other) == other
 
 
 def single(value: float) -> float | None:
-    """A double as the nearest float of 32 bits; `None` where none is large enough."""
+    """Returns a double as the nearest 32-bit float; `None` if it is too large."""
     try:
         (rounded,) = struct.unpack("<f", struct.pack("<f", value))
     except OverflowError:
@@ -99,7 +99,7 @@ def single(value: float) -> float | None:
 
 
 def spell_float(value: float, *, is_single: bool) -> str:
-    """The shortest text that is read as this number again."""
+    """Returns the shortest text that reads as this number."""
     if is_single:
         for digits in range(6, 10):
             text = f"{value:.{digits}g}"

@@ -1,4 +1,4 @@
-"""Commands, reports and streams as values, with all that the protocol says of them."""
+"""Commands, reports and streams as values, with their facts from the protocol."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ B = TypeVar("B", bound="Message | bytes", covariant=True)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AckPolicy:
-    """How the acknowledgement of a report is awaited."""
+    """Repetition of a report until its acknowledgement comes."""
 
     timeout: float
-    """Seconds to wait before the report is sent again; up to an eighth longer, by connection."""
+    """Seconds before the report is sent again; up to an eighth longer, by connection."""
     retries: int
-    """How often to send it again before giving up."""
+    """Number of repetitions after the first try."""
 
     def __post_init__(self) -> None:
         """Checks both. Raises `TypeError` and `ValueError`."""
@@ -38,26 +38,26 @@ _ACK: Final[Mapping[str, Check]] = {"timeout": duration, "retries": integer(0)}
 
 
 class Effect(str, Enum):
-    """What a command does to the peer."""
+    """Effect of a command on the peer."""
 
     READ = "read"
-    """Only asks."""
+    """Only reads."""
     CONFIG = "config"
-    """Changes what the peer knows or how it behaves."""
+    """Changes the peer's settings or behaviour."""
     MOTION = "motion"
     """Sets something in motion."""
     UNKNOWN = "unknown"
-    """Nobody knows: never repeated by itself, like what sets something in motion."""
+    """Unknown: never repeated automatically, like a command that sets something in motion."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Facts:
-    """What is said of every operation."""
+    """Facts common to every operation."""
 
     name: str
     """Name in the spec."""
     code: int | None
-    """Command code; `None` while the spec has not given one."""
+    """Command code; `None` while the spec has assigned none."""
     zh: str
     """Chinese title."""
     en: str
@@ -65,17 +65,17 @@ class Facts:
     since: str | None = None
     """First version of the spec that has it, as `YYYY-MM` or `YYYY-MM-DD`."""
     deprecated: bool = False
-    """Whether it has been withdrawn."""
+    """`True` if it is deprecated."""
     docs: str = ""
     """Path of its page below the documentation's root."""
     spec: str = ""
     """File of the spec that defines it."""
     method: str = ""
-    """What its method is called, where that is not `name`."""
+    """Name of its method, if it differs from `name`."""
 
     @property
     def method_name(self) -> str:
-        """What its method is called."""
+        """Name of its method."""
         return self.method or self.name
 
 
@@ -91,36 +91,38 @@ class States:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Preconditions:
-    """What has to hold before a command is accepted."""
+    """Conditions under which a command is accepted."""
 
     any_state: bool = False
     """It is accepted in any state."""
     states: tuple[States, ...] = ()
-    """It is accepted where each of these enums has one of these values; empty where nothing is said."""
+    """The states that accept it: each of these enums must have one of these values. Empty if the spec does not specify
+    them.
+    """
     after: tuple[str, ...] = ()
     """Names of the commands that come first."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cadence:
-    """When a report is sent. A path is that of wire keys from the report's body on, joined by dots."""
+    """When a report is sent. A path has wire keys from the report's body on, joined by dots."""
 
     on_change: str | None = None
     """At each change of the field at this path."""
     step: tuple[str, float] | None = None
-    """At each step of the number at this path, and how far it moves in between."""
+    """At each step of the number at this path, with the size of a step."""
     every: float | None = None
-    """At intervals of so many seconds."""
+    """Every so many seconds."""
     within: float | None = None
-    """At the latest so many seconds after a command that sets it off."""
+    """Within so many seconds after a command that sets it off."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tie:
-    """Two fields that are the same if a report belongs to a call."""
+    """Two fields that are equal if a report belongs to a call."""
 
     of_response: bool
-    """Whether the command's field is in its response; otherwise in its request."""
+    """`True` if the command's field is in its response, `False` for its request."""
     command: str
     """The command's field, as names joined by dots."""
     report: str
@@ -132,13 +134,13 @@ class Report(Facts, Generic[Q]):
     """A message that is pushed and acknowledged."""
 
     request: type[Q]
-    """What is reported."""
+    """Type of the report."""
     response: type[Message]
-    """The acknowledgement."""
+    """Type of the acknowledgement."""
     ack: AckPolicy | None = None
-    """How its acknowledgement is awaited; `None` for the protocol's default."""
+    """Policy for its acknowledgement; `None` for the protocol's default."""
     cadence: Cadence | None = None
-    """When it is sent; `None` if the spec does not define it."""
+    """When it is sent; `None` if the spec does not specify it."""
     state: str | None = None
     """The field with the state of the process, as names joined by dots."""
     failures: tuple[str, ...] = ()
@@ -176,22 +178,22 @@ class Command(Facts, Generic[Q, R]):
     """A request with a code, tied to its response."""
 
     request: type[Q]
-    """What is asked."""
+    """Type of the request."""
     response: type[R]
-    """What answers it."""
+    """Type of the response."""
     effect: Effect
-    """What it does to the peer."""
+    """Effect on the peer."""
     preconditions: Preconditions | None = None
-    """What has to hold before it is accepted; `None` where the spec says nothing of that."""
+    """Conditions under which it is accepted; `None` if the spec specifies none."""
     errors: type[Result] | None = None
-    """The results besides success that it declares; `None` where it declares none."""
+    """The declared results besides success; `None` for none."""
     sets_off: tuple[SetsOff, ...] = ()
     """The reports that it sets off."""
 
     def accepted_in(self, state: object) -> bool:
-        """Whether it is accepted in this state, as far as it depends on states of this enum.
+        """Returns `True` if it is accepted in this state, as far as states of this enum decide it.
 
-        One that the spec does not know is none of them.
+        A value that the spec does not declare is none of them.
         """
         states = self.preconditions.states if self.preconditions is not None else ()
         about = [one for one in states if isinstance(state, one.of) or not isinstance(state, Enum)]
@@ -203,11 +205,11 @@ class Stream(Facts, Generic[B]):
     """Frames of raw bytes, or of JSON without an envelope."""
 
     body: type[B]
-    """What its frames hold: a type of messages, or `bytes`."""
+    """Content of its frames: a type of messages, or `bytes`."""
     from_robot: bool
-    """Whether the robot sends it; otherwise the app does."""
+    """`True` if the robot sends it, `False` for the app."""
     content: str | None = None
-    """Media type of what its frames carry, `None` where none is stated."""
+    """Media type of its content; `None` if not specified."""
     started_by: str | None = None
     """Name of the command after which it is sent."""
     stopped_by: str | None = None
@@ -216,18 +218,18 @@ class Stream(Facts, Generic[B]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PassThrough:
-    """Codes that a robot hands on as they come, where they have no command."""
+    """A range of codes that a robot handles without types, except codes with a command."""
 
     first: int
-    """The first."""
+    """First code."""
     last: int
-    """The last."""
+    """Last code."""
     method: str
-    """What the method of the robot is called."""
+    """Name of the robot's method."""
 
 
 def field_at(message: Message, path: str) -> Any:
-    """The value at a path of names of fields; `None` where one on the way is absent."""
+    """Returns the value at a path of field names; `None` if a field on the way is absent."""
     value: Any = message
     for name in path.split("."):
         value = None if value is None else getattr(value, name, None)

@@ -1,27 +1,26 @@
-"""What a connection pays for when its frames make work and cannot be used: for a while nothing is read from it."""
+"""The penalty of a connection whose frames cost work and are useless: nothing is read from it for a while."""
 
 from __future__ import annotations
 
 from typing import Final
 
-# Bytes that a connection may have decompressed for it in a second, beyond those that it has sent.
+# Free decompression beyond the bytes received, in bytes per second.
 _INFLATED: Final = 128 * 1024 * 1024
-# Seconds that a frame costs which cannot be used, and how many of them are free: an app of another version notices
-# nothing.
+# Cost of a useless frame in seconds, and number of free ones: an app of another version does not notice.
 _UNUSABLE: Final = 0.001
 _FREE: Final = 256
 
 
 class Pace:
-    """What one connection has to pay for."""
+    """The penalty of one connection."""
 
     def __init__(self) -> None:
-        """Nothing is owed."""
+        """Creates it without a penalty."""
         self._owed = 0.0
         self._at = 0.0
 
     def owe(self, unusable: int, surplus: int, now: float) -> float:
-        """How long the connection rests after so many useless frames, and so many bytes decompressed for it."""
+        """Returns the seconds that the connection rests after so many useless frames and decompressed bytes."""
         rest = surplus / _INFLATED if surplus > _INFLATED // 1000 else 0.0
         if unusable:
             self._owed = max(0.0, self._owed - (now - self._at)) + unusable * _UNUSABLE

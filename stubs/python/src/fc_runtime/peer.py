@@ -38,7 +38,7 @@ _log: Final = logging.getLogger(__name__)
 
 @dataclass(slots=True, eq=False)
 class _Work:
-    """A request in the hands of its handler."""
+    """A request in a handler."""
 
     frame: FrameId
     context: Context
@@ -53,7 +53,7 @@ class Peer:
     """One app's connection."""
 
     def __init__(self, server: Server, connection: int) -> None:
-        """Of a robot, with a number of its own."""
+        """Creates a connection of a robot, with this number."""
         config, protocol, limits = server.config, server.protocol, server.limits
         first_id = first_id_now() if config.first_id is None else config.first_id
         self.server: Final = server
@@ -61,11 +61,11 @@ class Peer:
         self.address = ""
         """The app's address."""
         self.effects: frozenset[Effect] = frozenset(Effect)
-        """What may be called from there."""
+        """Effects of the commands that the address may call."""
         self._session: Final[Session[Push]] = Session(protocol, limits, protocol.defaults.ack, first_id)
         self._queue: Final[deque[Push]] = deque()
         self._queued_bytes = 0
-        # In the order in which they began.
+        # In their order of beginning.
         self._works: Final[dict[_Work, None]] = {}
         self._bodies = 0
         self._is_deaf = False
@@ -96,17 +96,17 @@ class Peer:
 
     @property
     def is_heard(self) -> bool:
-        """Whether anything has come over it."""
+        """`True` if bytes have been received over it."""
         return self.link.received > 0
 
     @property
     def held(self) -> int:
-        """Bytes that it makes the robot hold."""
+        """Bytes held for it."""
         return self.link.held + self._bodies + self._queued_bytes
 
     @property
     def tasks(self) -> set[asyncio.Task[None]]:
-        """Handlers whose results are waited for."""
+        """Handlers whose results are awaited."""
         return {work.task for work in self._works if work.task is not None}
 
     def _arrive(self, _: Link, frame: Frame) -> None:
@@ -121,7 +121,7 @@ class Peer:
         elif meaning is Incoming.LATE:
             self._rest(unusable=1)
         else:
-            # Robots take no reports, and streams have a port of their own.
+            # Robots receive no reports, and streams use the data port.
             self._refuse(frame.id, results.protocol)
         surplus = self.link.surplus
         if surplus:
@@ -140,7 +140,7 @@ class Peer:
             self._refuse(error.frame, server.protocol.results.protocol)
 
     def _rest(self, unusable: int = 0, surplus: int = 0) -> None:
-        """Read no more for a while, if there was too much useless work."""
+        """Stops reading for a while if there were too many useless frames."""
         loop = self.server.loop
         rest = self._pace.owe(unusable, surplus, loop.time())
         if rest > 0 and not self._is_over:
@@ -149,7 +149,7 @@ class Peer:
             loop.call_later(rest, self.link.let_go, "pace")
 
     def _begin(self, frame: Frame) -> None:
-        """Hand a request to its handler, or refuse it."""
+        """Passes a request to its handler, or refuses it."""
         server, results, code = self.server, self.server.protocol.results, frame.id.code
         command = server.protocol.commands_by_code.get(code)
         raw_handler = server.robot.raw_handler(code) if command is None else None
@@ -200,7 +200,7 @@ class Peer:
         return read_request(server.protocol, command.request, frame.data, server.limits)
 
     def _forget(self, work: _Work) -> bool:
-        """Wait for a handler no longer; false if nobody waits for it any more."""
+        """Removes a handler. Returns `False` if its result was no longer awaited."""
         if work not in self._works:
             return False
         del self._works[work]
@@ -208,7 +208,7 @@ class Peer:
         return True
 
     def _look_for_late(self) -> None:
-        """End what has taken too long. All have the same time, so the first to begin is the first to be late."""
+        """Abandons handlers that take too long. All have the same timeout, so they expire in their order."""
         self._late_timer = None
         now = self.server.loop.time()
         for work in [*self._works]:
@@ -220,14 +220,14 @@ class Peer:
                 self._go_on()
 
     def _abandon(self, work: _Work) -> bool:
-        """Wait for a handler no longer, and let it know; false if nobody waits for it any more."""
+        """Abandons a handler. Returns `False` if its result was no longer awaited."""
         is_waited_for = self._forget(work)
         if is_waited_for and work.task is not None:
             self.server.abandon(work.task, work.context)
         return is_waited_for
 
     async def _handle(self, work: _Work, request: Any) -> None:
-        """Let the handler do what is asked, and answer as soon as that is done, if anybody still waits for it."""
+        """Runs the handler, and responds with its result if that is still awaited."""
         server, results = self.server, self.server.protocol.results
         try:
             response = await work.handler(work.context, request)
@@ -261,7 +261,7 @@ class Peer:
         self._go_on()
 
     def _write(self, command: Command[Any, Any] | None, response: Any) -> bytes:
-        """A response as it is sent. Raises `BodyError`."""
+        """Returns the bytes of a response. Raises `BodyError`."""
         protocol = self.server.protocol
         if command is None:
             return write_raw_response(protocol, protocol.results.success, response)
@@ -273,12 +273,12 @@ class Peer:
         self._end_if_drained()
 
     def _refuse(self, frame: FrameId, result: ResultText) -> None:
-        """Answer what could not be used."""
+        """Refuses a request that cannot be used."""
         self._answer(frame, result)
         self._rest(unusable=1)
 
     def _answer(self, frame: FrameId, result: ResultText, *, is_refusal: bool = False) -> None:
-        """Answer with a result other than success."""
+        """Responds with a result other than success."""
         protocol, counters = self.server.protocol, self.server.counters
         if is_refusal and result.code != protocol.results.protocol.code:
             counters.calls_refused += 1
@@ -294,7 +294,7 @@ class Peer:
             try:
                 self._send(frame, write_response(protocol, result))
             except FrameError as error:
-                # Even that does not fit into a frame: the app hears nothing, and waits no longer than its timeout.
+                # Even that does not fit into a frame: the app gets no response, and its call ends by timeout.
                 self.server.log("no answer", logging.ERROR, "no answer fits into a frame: %s", error)
 
     def _send(self, frame: FrameId, data: bytes) -> None:
@@ -317,7 +317,7 @@ class Peer:
         self._pump()
 
     def push(self, push: Push) -> None:
-        """Queue a report; the oldest that have not been sent make way."""
+        """Queues a report, in place of the oldest unsent ones if the queue is full."""
         if self._is_over:
             push.end(Outcome.CLOSED)
             return
@@ -334,7 +334,7 @@ class Peer:
             dropped.end(Outcome.DROPPED)
 
     def _pump(self) -> None:
-        """Send reports again that are due, and those that have room now."""
+        """Sends reports that are due again, and new ones as far as there is room."""
         now, counters = self.server.loop.time(), self.server.counters
         if self._is_over:
             return
@@ -353,14 +353,14 @@ class Peer:
             self.link.send(self.server.encoder.frame(frame, push.prepared))
         due_at = self._session.next_due
         if due_at is None and self._queue:
-            # The app does not read: what waits is looked at again.
+            # The app does not read: check again later.
             due_at = now + self.server.protocol.defaults.ack.timeout
         if self._timer is not None:
             self._timer.cancel()
         self._timer = None if due_at is None else self.server.loop.call_at(due_at, self._pump)
 
     def _ended(self, _: Link, why: str, error: Exception | None) -> None:
-        """Read no more; what is being handled is answered first, unless nothing can be sent either."""
+        """Stops reading. Running requests still get their responses, unless sending is not possible either."""
         self._is_deaf = True
         server = self.server
         if why in ("stalled", "idle", "unread"):
@@ -374,7 +374,7 @@ class Peer:
             self._end_if_drained()
 
     def drain(self) -> None:
-        """Take no more requests, and end when those there are have been answered."""
+        """Takes no more requests, and ends once the present ones have their responses."""
         self._is_deaf = True
         self.link.hold("drain")
         self._end_if_drained()
@@ -384,7 +384,7 @@ class Peer:
             self.over()
 
     def over(self, *, at_once: bool = False) -> None:
-        """End the connection, and with it what only it has waited for."""
+        """Ends the connection, with all that only it has waited for."""
         if self._is_over:
             return
         self._is_over = True
@@ -407,5 +407,5 @@ def _all(_: FrameId, __: Push) -> bool:
 
 
 def because(result: ResultText, why: object) -> ResultText:
-    """A result, and what is wrong."""
+    """Returns a result with a reason."""
     return replace(result, text=f"{result.text}: {why}")

@@ -1,6 +1,6 @@
-"""What a generated protocol tells the runtime: its header, envelopes, numbers and operations.
+"""A generated protocol's data for the runtime: its header, envelopes, numbers and operations.
 
-This package contains no number of a protocol. Every code, port, head byte and result code reaches it from here.
+This package contains no number of a protocol. Every code, port, head byte and result code comes from there.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from .settings import Check
 
 INFLATE_FREE: Final = 1 << 20
-"""Data of so many bytes or fewer may have been compressed by any ratio."""
+"""Up to this many plain bytes, any compression ratio is allowed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Bounds of everything that grows with what a peer sends."""
+    """Limits on everything that grows with the bytes from a peer."""
 
     frame_bytes: int
     """Longest frame, header included."""
@@ -43,9 +43,9 @@ class Limits:
     connections: int
     """Connections at one port of a robot."""
     inflate_ratio: int = 256
-    """Most bytes that one byte of compressed JSON may become, where more than `INFLATE_FREE` come out."""
+    """Most plain bytes per byte of compressed JSON, for more than `INFLATE_FREE` plain bytes."""
     json_values: int = DEFAULT_VALUES
-    """Most keys and items in a body, those of all levels together."""
+    """Most keys and items in a body, on all levels together."""
 
     def __post_init__(self) -> None:
         """Checks every limit. Raises `TypeError` and `ValueError`."""
@@ -66,7 +66,7 @@ _LIMITS: Final[Mapping[str, Check]] = {
 
 @dataclass(frozen=True, slots=True)
 class ResultText:
-    """A result code and the text sent beside it."""
+    """A result code and its text."""
 
     code: int
     """The code."""
@@ -76,14 +76,14 @@ class ResultText:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """Results that the runtime itself answers with."""
+    """Results that the runtime sends."""
 
     success: ResultText
-    """The call did what it should."""
+    """Success."""
     protocol: ResultText
     """Unknown command, reserved kind, bad digest."""
     timeout: ResultText
-    """No answer from the handler in time."""
+    """No response from the handler in time."""
     invalid: ResultText
     """A body that does not parse or breaks a constraint."""
     expired: ResultText
@@ -92,18 +92,18 @@ class Results:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Defaults:
-    """Times (in seconds) and limits where the user sets none."""
+    """Times (in seconds) and limits that apply unless the user sets others."""
 
     call_timeout: float
-    """How long a call waits for its response."""
+    """Time a call waits for its response."""
     handler_timeout: float
-    """How long a handler may take before the peer is told."""
+    """Time a handler may take before the peer gets the result for a timeout."""
     max_age: float | None
     """Oldest message that is still served; `None` for any age."""
     ack: AckPolicy
     """Acknowledgement of reports."""
     limits: Limits
-    """Bounds."""
+    """Limits."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +119,7 @@ class Protocol:
     data_port: int
     """TCP port of streams."""
     byte_order: str
-    """`big` or `little`, of all integers in the header."""
+    """Byte order of all integers in the header: `big` or `little`."""
     header: tuple[HeaderField, ...]
     """Fields of the frame's header, in order."""
     request_head: bytes
@@ -133,23 +133,23 @@ class Protocol:
     report: int
     """Kind of a report and of its acknowledgement."""
     reserved_kinds: frozenset[int] = frozenset()
-    """Kinds that are refused by name."""
+    """Kinds that are refused with a separate error."""
     plain: int = 0
-    """Encoding of data sent as it is."""
+    """Encoding of uncompressed data."""
     gzip: int | None = None
-    """Encoding of data sent as one gzip member; `None` if nothing is compressed."""
+    """Encoding of data as one gzip member; `None` if the protocol has no compression."""
     request_envelope: type[Message]
-    """The keys that every request carries."""
+    """The envelope of every request."""
     response_envelope: type[Message]
-    """The keys that every response carries."""
+    """The envelope of every response."""
     request_roles: Mapping[str, str] = field(default_factory=dict[str, str])
     """Fields of the request's envelope by their roles: `time`."""
     response_roles: Mapping[str, str] = field(default_factory=dict[str, str])
     """Fields of the response's envelope by their roles: `time`, `result_code`, `result_text`."""
     results: Results
-    """Results that the runtime itself answers with."""
+    """Results that the runtime sends."""
     defaults: Defaults
-    """Times and limits where the user sets none."""
+    """Times and limits that apply unless the user sets others."""
     commands: tuple[Command[Any, Any], ...] = ()
     """All commands."""
     reports: tuple[Report[Any], ...] = ()
@@ -157,7 +157,7 @@ class Protocol:
     streams: tuple[Stream[Any], ...] = ()
     """All streams."""
     pass_through: tuple[PassThrough, ...] = ()
-    """Codes without a command that a robot may hand on as they come."""
+    """Code ranges that a robot may handle without types."""
 
     @cached_property
     def layout(self) -> Layout:
@@ -166,24 +166,24 @@ class Protocol:
 
     @cached_property
     def commands_by_code(self) -> Mapping[int, Command[Any, Any]]:
-        """The commands that have a code."""
+        """The commands with a code, by code."""
         return {one.code: one for one in self.commands if one.code is not None}
 
     @cached_property
     def reports_by_code(self) -> Mapping[int, Report[Any]]:
-        """The reports that have a code."""
+        """The reports with a code, by code."""
         return {one.code: one for one in self.reports if one.code is not None}
 
     def operation(self, code: int) -> Command[Any, Any] | Report[Any] | None:
-        """The command or report of a code."""
+        """Returns the command or report with a code."""
         return self.commands_by_code.get(code) or self.reports_by_code.get(code)
 
     def effect(self, code: int) -> Effect:
-        """What the command of a code does, for all that is known."""
+        """Returns the effect of the command with a code; `UNKNOWN` for other codes."""
         command = self.commands_by_code.get(code)
         return Effect.UNKNOWN if command is None else command.effect
 
     @property
     def has_result(self) -> bool:
-        """Whether responses carry a result code."""
+        """`True` if responses have a result code."""
         return "result_code" in self.response_roles

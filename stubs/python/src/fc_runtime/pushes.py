@@ -1,4 +1,4 @@
-"""Reports on their way to apps, and what becomes of them."""
+"""Reports to apps, and their outcomes."""
 
 from __future__ import annotations
 
@@ -16,92 +16,92 @@ if TYPE_CHECKING:
 
 
 class Outcome(str, Enum):
-    """What has become of a report on its way to one app."""
+    """Outcome of a report at one app."""
 
     ACKNOWLEDGED = "acknowledged"
-    """The app has it."""
+    """The app acknowledged it."""
     REFUSED = "refused"
-    """The app has refused it."""
+    """The app acknowledged it with a result other than success."""
     INVALID = "invalid"
-    """The app's answer is no acknowledgement."""
+    """The app sent something that is not an acknowledgement."""
     TIMED_OUT = "timed_out"
-    """No acknowledgement came, for all repetitions."""
+    """No acknowledgement came, and the repetitions are used up."""
     DROPPED = "dropped"
-    """It made way before it was sent: the app is slow."""
+    """Newer reports replaced it before it was sent: the app is slow."""
     CLOSED = "closed"
     """The connection ended first."""
 
 
 @dataclass(frozen=True, slots=True)
 class Acknowledgement:
-    """What has become of a report on its way to one app."""
+    """Outcome of a report at one app."""
 
     connection: int
     """The app's connection."""
     outcome: Outcome
-    """What has become of it."""
+    """The outcome."""
     why: Refusal | BodyError | None = None
-    """What the app has answered with `REFUSED`, and what is wrong with its answer for `INVALID`."""
+    """The app's refusal for `REFUSED`, the error in its acknowledgement for `INVALID`."""
 
 
 class PushError(Exception):
-    """A report or a frame of a stream that was not even queued."""
+    """The error of a report or a stream's frame that was not queued."""
 
     name: ClassVar[str] = ""
-    """Its name, the same in every language."""
+    """Name of the error, the same in every language."""
 
 
 class InvalidReportError(PushError):
-    """What is to be sent breaks one of its own constraints."""
+    """The content to send breaks a constraint."""
 
     name: ClassVar[str] = "invalid_report"
 
     def __init__(self, error: BodyError) -> None:
-        """With what is wrong."""
+        """Creates the error from the error in the content."""
         super().__init__(f"what is to be sent is invalid: {error}")
         self.error: Final = error
-        """What is wrong."""
+        """The error in the content."""
 
 
 class FramePushError(PushError):
-    """What is to be sent does not fit into a frame."""
+    """The content to send does not fit into a frame."""
 
     name: ClassVar[str] = "frame"
 
     def __init__(self, error: FrameError) -> None:
-        """With what is wrong."""
+        """Creates the error from the frame's error."""
         super().__init__(str(error))
         self.error: Final = error
-        """What is wrong."""
+        """The error of the frame."""
 
 
 class NoConnectionError(PushError, LookupError):
-    """There is no such connection any more; for a stream: no data connection of that app."""
+    """The connection does not exist any more. For a stream: that app has no data connection."""
 
     name: ClassVar[str] = "no_connection"
 
     def __init__(self, connection: int) -> None:
-        """Says which."""
+        """Creates the error for a connection."""
         super().__init__(f"there is no connection {connection} to send to")
         self.connection: Final = connection
-        """Which."""
+        """The connection."""
 
 
 class AmbiguousError(PushError):
-    """Several apps share the address, and nothing tells whose data connection is whose. Nothing was sent."""
+    """Several apps share the address, so the app's data connection is unknown. The frame was not sent."""
 
     name: ClassVar[str] = "ambiguous"
 
     def __init__(self, connection: int) -> None:
-        """Says whose."""
+        """Creates the error for an app."""
         super().__init__(f"several apps share the address of {connection}: whose data connection is it?")
         self.connection: Final = connection
-        """Whose."""
+        """The app's connection."""
 
 
 @dataclass(slots=True, eq=False)
 class Push:
-    """A report on its way to one app."""
+    """A report to one app."""
 
     code: int
     policy: AckPolicy
@@ -111,10 +111,10 @@ class Push:
 
     @property
     def size(self) -> int:
-        """Bytes that it holds."""
+        """Bytes of the report."""
         return len(self.prepared.data)
 
     def end(self, outcome: Outcome, why: Refusal | BodyError | None = None) -> None:
-        """Tell what has become of it."""
+        """Sets the outcome."""
         if not self.ended.done():
             self.ended.set_result(Acknowledgement(self.connection, outcome, why))

@@ -1,4 +1,4 @@
-"""Reports on their way to the app: what waits for each of its receivers, and what lies between."""
+"""Reports waiting for the app, in a queue for each receiver, with events between them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RawReport:
-    """A report as received, not read as a type."""
+    """A report as received, without types."""
 
     code: int
     """Its code."""
@@ -23,24 +23,24 @@ class RawReport:
     """Its JSON text."""
 
     def __repr__(self) -> str:
-        """Without its text, which may hold anything."""
+        """Shows it without its text, which may contain anything."""
         return f"RawReport(code=0x{self.code:04X}, id={self.id}, bytes={len(self.data)})"
 
 
 @dataclass(frozen=True, slots=True)
 class Missed:
-    """The queue was full, and so many reports went to other receivers alone."""
+    """The queue was full, so these reports went only to other receivers."""
 
     count: int
-    """How many."""
+    """Number of reports."""
 
 
 @dataclass(frozen=True, slots=True)
 class Interrupted:
-    """The connection was lost; what was reported meanwhile may not come again."""
+    """The connection was lost. Reports sent meanwhile may not be repeated."""
 
     why: Loss
-    """Why."""
+    """Reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Receiver:
     """The queue of one receiver."""
 
     def __init__(self, limit: int, bytes_limit: int, codes: frozenset[int] | None) -> None:
-        """For the reports of these codes; `None` for all."""
+        """Creates a queue for the reports of these codes; `None` for all."""
         self._limit: Final = limit
         self._bytes_limit: Final = bytes_limit
         self._codes: Final = codes
@@ -62,24 +62,24 @@ class Receiver:
         self._waiting: asyncio.Future[None] | None = None
         self._is_over = False
         self.missed = 0
-        """How many reports it has missed because its queue was full."""
+        """Number of reports missed because its queue was full."""
 
     def is_for(self, code: int) -> bool:
-        """Whether it wants reports of a code."""
+        """Returns `True` if it takes reports of a code."""
         return not self._is_over and (self._codes is None or code in self._codes)
 
     def has_room(self, size: int) -> bool:
-        """Whether a report of so many bytes fits."""
+        """Returns `True` if a report of this size fits."""
         return self._reports < self._limit and self._bytes + size <= self._bytes_limit
 
     def put(self, report: RawReport) -> None:
-        """Queue a report."""
+        """Queues a report."""
         self._reports += 1
         self._bytes += len(report.data)
         self._put(report)
 
     def miss(self) -> None:
-        """Note a report for which there is no room."""
+        """Counts a report without room."""
         self.missed += 1
         if self._events and isinstance(last := self._events[-1], Missed):
             self._events[-1] = Missed(last.count + 1)
@@ -87,13 +87,13 @@ class Receiver:
             self._put(Missed(1))
 
     def lost(self, why: Loss) -> None:
-        """Note a loss; one after the other without a report between is one."""
+        """Notes a loss. Losses without a report in between count as one."""
         while self._events and isinstance(self._events[-1], (Interrupted, Resumed)):
             self._events.pop()
         self._put(Interrupted(why))
 
     def connected(self) -> None:
-        """Note that there is a connection again."""
+        """Notes a new connection."""
         self._put(Resumed())
 
     def _put(self, event: RawReport | Missed | Interrupted | Resumed) -> None:
@@ -105,12 +105,12 @@ class Receiver:
             self._waiting.set_result(None)
 
     def end(self) -> None:
-        """No more will come."""
+        """Ends the queue."""
         self._is_over = True
         self._wake()
 
     def take(self) -> RawReport | Missed | Interrupted | Resumed | None:
-        """What comes next, if it is there."""
+        """Returns the next event, if there is one."""
         if not self._events:
             return None
         event = self._events.popleft()
@@ -120,7 +120,7 @@ class Receiver:
         return event
 
     async def next(self) -> RawReport | Missed | Interrupted | Resumed | None:
-        """What comes next; `None` once the connection is over and all has been taken."""
+        """Returns the next event; `None` once the connection is over and the queue is empty."""
         while (event := self.take()) is None:
             if self._is_over:
                 return None

@@ -1,4 +1,4 @@
-"""Result codes by name: those of a protocol, and those besides success that a command declares."""
+"""Results by name: those of a protocol, and those besides success that a command declares."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ E = TypeVar("E", bound="Result")
 
 
 class Result(Enum):
-    """Results by name. Each value is a code and the text that is sent beside it."""
+    """Results by name. Each value is a code and its text."""
 
     code: int
     """The code on the wire."""
     text: str
-    """The text sent beside it, for people only."""
+    """The text of the result, for people only."""
 
     def __init__(self, code: int, text: str) -> None:
-        """As the values say."""
+        """Creates a result from its value."""
         self.code = code
         self.text = text
 
     def refusal(self, why: str = "") -> Refusal:
-        """What a handler raises to answer with this result; `why` goes behind the text."""
+        """Returns the refusal that a handler raises for this result. `why` is appended to the text."""
         return Refusal(self.code, f"{self.text}: {why}" if why else self.text)
 
     @classmethod
     def of(cls: type[E], code: int) -> E | None:
-        """The one with this code."""
+        """Returns the result with this code."""
         return next((one for one in cls if one.code == code), None)

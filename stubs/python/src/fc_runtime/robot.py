@@ -1,4 +1,4 @@
-"""What the robot of a protocol stands on: it has one method per command, and everything else from here."""
+"""The base of a generated robot, which adds one method per command."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from .server import Server
 
 RawHandler: TypeAlias = "Callable[[Context, RawRequest], Awaitable[Json]]"
-"""Does what a request of any code asks for, and answers with an object of the response's own keys."""
+"""Handles a request of any code, and returns an object with the response's keys."""
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
 Handler: TypeAlias = "Callable[[Context, Any], Awaitable[Message]]"
-"""Does what a request asks for. To refuse it, raise `Refusal`."""
+"""Handles a request. To refuse it, raise `Refusal`."""
 
 
 def left_out(method: F) -> F:
-    """Marks a method as not written: its command is refused as not implemented."""
+    """Marks a method as not implemented: its command is refused."""
     method.__left_out__ = True  # type: ignore[attr-defined]
     return method
 
@@ -39,7 +39,7 @@ class Robot:
     """The protocol that it speaks."""
 
     def handlers_by_code(self) -> Mapping[int, Handler]:
-        """What it does for each code; a command without a handler is refused as not implemented."""
+        """Returns the handler of each code. A command without a handler is refused as not implemented."""
         commands = self.protocol.commands_by_code
         methods = {code: getattr(self, command.method_name, None) for code, command in commands.items()}
         return {
@@ -49,7 +49,7 @@ class Robot:
         }
 
     def raw_handler(self, code: int) -> RawHandler | None:
-        """What it does for a code without a command; `None` where that is refused as unknown."""
+        """Returns the handler of a code without a command; `None` if that is refused as unknown."""
         for one in self.protocol.pass_through:
             method: RawHandler | None = getattr(self, one.method, None)
             if one.first <= code <= one.last and method is not None and not getattr(method, "__left_out__", False):
@@ -58,26 +58,26 @@ class Robot:
 
     @left_out
     async def unknown(self, context: Context, request: RawRequest) -> Json:
-        """Do what a request of a code asks for that the spec does not know; refused unless the robot has this."""
+        """Handles a request with an undeclared code. Without this method such requests are refused."""
         raise NotImplementedError
 
 
 class Handlers(Robot):
-    """A robot made of functions, by the codes of their commands."""
+    """A robot made of functions, by command code."""
 
     def __init__(self, protocol: Protocol, handlers: Mapping[int, Handler]) -> None:
-        """Of a protocol."""
+        """Creates the robot for a protocol."""
         self.protocol = protocol  # type: ignore[misc]
         self._handlers: Final = handlers
 
     def handlers_by_code(self) -> Mapping[int, Handler]:
-        """As given."""
+        """Returns the given handlers."""
         return self._handlers
 
 
 @dataclass(frozen=True, slots=True)
 class RawRequest:
-    """A request as received, not read as a type."""
+    """A request as received, without types."""
 
     code: int
     """Its code."""
@@ -87,22 +87,22 @@ class RawRequest:
     """Its JSON text, envelope included."""
 
     def __repr__(self) -> str:
-        """Without its text, which may hold anything."""
+        """Shows it without its text, which may contain anything."""
         return f"RawRequest(code=0x{self.code:04X}, id={self.id}, bytes={len(self.data)})"
 
 
 class ExampleRobot(Robot):
-    """A robot that answers with the examples of the spec, for trying out apps.
+    """A robot that responds with the examples of the spec, for trying out apps.
 
-    What moves a real robot it refuses, unless it is to pretend.
+    It refuses commands that move a real robot, unless `pretend_motion` is set.
     """
 
     def __init__(self, *, pretend_motion: bool = False) -> None:
-        """`pretend_motion`: answer success to these as well, though nothing moves."""
+        """`pretend_motion`: respond with success to these as well, without any motion."""
         self.pretend_motion: Final = pretend_motion
 
     def handlers_by_code(self) -> Mapping[int, Handler]:
-        """Examples for all commands."""
+        """Returns handlers with examples for all commands."""
         return {
             code: _example(command)
             for code, command in self.protocol.commands_by_code.items()
@@ -122,7 +122,7 @@ class Reporter:
     """Pushes reports. Its subclasses have one method per report."""
 
     def __init__(self, server: Server) -> None:
-        """To the apps of a server."""
+        """Creates the reporter of a server."""
         self.server: Final = server
 
 
@@ -130,5 +130,5 @@ class Streamer:
     """Sends the robot's streams. Its subclasses have one method per stream."""
 
     def __init__(self, server: Server) -> None:
-        """To the data connections of a server."""
+        """Creates the streamer of a server."""
         self.server: Final = server

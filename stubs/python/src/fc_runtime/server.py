@@ -50,12 +50,12 @@ B = TypeVar("B", bound="Message | bytes")
 T = TypeVar("T", bound="_Member")
 
 _log: Final = logging.getLogger(__name__)
-# How often, in bytes received or sent, it is looked at how much is held.
+# Bytes received or sent between two checks of the memory limit.
 _LOOK_EACH: Final = 256 * 1024
 
 
 class _Member(Interface):
-    """A connection at one of the ports."""
+    """A connection to one of the ports."""
 
     @property
     def connection(self) -> int: ...
@@ -71,10 +71,10 @@ class _Member(Interface):
 
 
 class Server:
-    """Serves a robot at its command port and its data port. Belongs to the event loop in which it is made."""
+    """Serves a robot at its command port and its data port. It belongs to the event loop that it is created in."""
 
     def __init__(self, robot: Robot, config: ServerConfig | None = None) -> None:
-        """Of a robot; what it does not implement is refused."""
+        """Creates the server of a robot. Commands that the robot does not implement are refused."""
         config = config or ServerConfig()
         protocol = robot.protocol
         self.robot: Final = robot
@@ -110,7 +110,7 @@ class Server:
         self._over: Final[asyncio.Future[None]] = self.loop.create_future()
 
     async def bind(self) -> None:
-        """Listen at both ports; then see `command_address` and `data_address`."""
+        """Listens on both ports; then see `command_address` and `data_address`."""
         config, protocol = self.config, self.protocol
         ports = (
             (config.command_port, protocol.command_port, self.accept),
@@ -131,12 +131,12 @@ class Server:
 
     @property
     def command_address(self) -> tuple[str, int]:
-        """Where it listens for commands."""
+        """Address that it listens on for commands."""
         return self._address(0)
 
     @property
     def data_address(self) -> tuple[str, int]:
-        """Where it listens for data connections."""
+        """Address that it listens on for data connections."""
         return self._address(1)
 
     def _address(self, index: int) -> tuple[str, int]:
@@ -144,45 +144,45 @@ class Server:
         return address
 
     def accept(self) -> asyncio.Protocol:
-        """Make the protocol of a new command connection: for `loop.create_server`, for TLS, and for pipes."""
+        """Creates the asyncio protocol of a new command connection: for `loop.create_server`, TLS and pipes."""
         return Peer(self, next(self._ids)).link
 
     def accept_data(self) -> asyncio.Protocol:
-        """Make the protocol of a new data connection."""
+        """Creates the asyncio protocol of a new data connection."""
         return DataPeer(self, next(self._ids)).link
 
     @property
     def connections(self) -> list[tuple[int, str]]:
-        """The apps that are connected, and their addresses."""
+        """The connected apps, with their addresses."""
         return sorted((one.connection, one.address) for one in self._peers.values())
 
     @property
     def memory(self) -> int:
-        """Bytes that apps make the robot hold at this moment."""
+        """Bytes held for apps at present."""
         streams = 0 if self.app_streams is None else self.app_streams.held()
         return sum(one.held for one in self._members()) + streams
 
     def _held_by(self, one: _Member) -> int:
-        """Bytes that one connection makes the robot hold."""
+        """Returns the bytes held for one connection."""
         return one.held + (0 if self.app_streams is None else self.app_streams.held(one.connection))
 
     def _members(self) -> list[_Member]:
         return [*self._peers.values(), *self._data_peers.values()]
 
     def log(self, cause: str, level: int, text: str, *values: object) -> None:
-        """Write a line of the log, unless there have been many of this cause."""
+        """Writes a line of the log, unless this cause has had many."""
         held = self._lines.setdefault(cause, Thin()).line(self.loop.time())
         if held is not None:
             _log.log(level, "%s: " + text + "%s", self.protocol.name, *values, held)
 
     def log_end(self, connection: int, address: str, port: str, reason: str) -> None:
-        """Log the end of a connection."""
+        """Logs the end of a connection."""
         self.log(
             "ended", logging.INFO, "connection %d from %s ended at the %s port: %s", connection, address, port, reason
         )
 
     def admit(self, peer: Peer) -> None:
-        """Enter a command connection, or close it if it may not be or there are too many."""
+        """Adds a command connection, or closes it if its address is not allowed or there are too many."""
         effects = self._effects(peer.address)
         if effects is None:
             peer.over(at_once=True)
@@ -196,11 +196,11 @@ class Server:
                 data.owners.add(peer.connection)
 
     def admit_data(self, peer: DataPeer) -> None:
-        """Enter a data connection, or close it if it may not be or there are too many."""
+        """Adds a data connection, or closes it if its address is not allowed or there are too many."""
         if self._effects(peer.address) is None:
             peer.over(at_once=True)
             return
-        # An app that only receives streams is known by its commands.
+        # A data connection that only receives counts as active if its address also sends commands.
         speakers = {one.address for one in self._peers.values() if one.is_heard}
         if not self._admit(self._data_peers, peer, lambda one: not one.is_heard and one.address not in speakers):
             return
@@ -210,7 +210,7 @@ class Server:
         peer.owners.update(one.connection for one in self._peers.values() if one.address == peer.address)
 
     def _effects(self, address: str) -> frozenset[Effect] | None:
-        """What may be called from an address; `None` if nobody may connect from there."""
+        """Returns the effects allowed from an address; `None` if it may not connect."""
         if self._allowed is None:
             return frozenset(Effect)
         with contextlib.suppress(ValueError):
@@ -250,12 +250,12 @@ class Server:
         return True
 
     def gone(self, peer: Peer) -> None:
-        """Forget a command connection that has ended."""
+        """Removes a command connection that has ended."""
         self._peers.pop(peer.connection, None)
         self._close(peer.link)
 
     def gone_data(self, peer: DataPeer) -> None:
-        """Forget a data connection that has ended."""
+        """Removes a data connection that has ended."""
         self._data_peers.pop(peer.connection, None)
         self._close(peer.link)
 
@@ -265,18 +265,18 @@ class Server:
             link.gone.add_done_callback(lambda _: self._closing.discard(link))
 
     def count_bytes(self, received: int, sent: int) -> None:
-        """Note bytes that have come or gone, and look now and then at how much is held."""
+        """Counts bytes received or sent, and checks the memory limit now and then."""
         self.counters.bytes_in += received
         self.counters.bytes_out += sent
         self.look_at_memory(received + sent)
 
     def look_at_memory(self, more: int) -> None:
-        """Note that more bytes may be held, and look now and then at how much is."""
+        """Notes that more bytes may be held, and checks the memory limit now and then."""
         self._looked += more
         if self._looked < _LOOK_EACH:
             return
         self._looked = 0
-        # An eighth is kept for what is read and answered at a moment.
+        # An eighth is reserved for requests and responses being handled.
         if self.memory > self.config.memory - self.config.memory // 8:
             most = max(self._members(), key=self._held_by, default=None)
             if most is None:
@@ -290,13 +290,13 @@ class Server:
 
     @property
     def is_abandoned_full(self) -> bool:
-        """Whether as many handlers run on as may."""
+        """`True` if the most abandoned handlers run."""
         return 0 < self.config.abandoned_handlers <= len(self._abandoned)
 
     def tell_failure(self, what: str, error: BaseException, context: Context, handler: Any) -> None:
-        """Log an error of a handler by its class and place, and pass it to `on_handler_error`."""
+        """Logs an error of a handler by its class and place, and passes it to `on_handler_error`."""
         known = self.protocol.commands_by_code.get(context.code)
-        # All codes without a command are one cause: an app chooses them.
+        # All codes without a command count as one cause, since apps choose them.
         cause = f"{what} {'' if known is None else known.name}"
         self._log_failure(cause, what % (f"0x{context.code:04X}" if known is None else known.name), error, handler)
         hook = self.config.on_handler_error
@@ -308,12 +308,14 @@ class Server:
             self._log_failure("hook", "`on_handler_error` failed", failed, hook)
 
     def _log_failure(self, cause: str, what: str, error: BaseException, function: Any) -> None:
-        # The error's own text may hold what was received.
+        # The error's text may quote received data.
         self.log(cause, logging.ERROR, "%s: %s", what, describe(error, function))
         _log.debug("%s: %s", self.protocol.name, what, exc_info=error)
 
     def abandon(self, task: asyncio.Task[Any], context: Context) -> None:
-        """Nobody waits for a handler any more: what only asks is cancelled, what moves something runs to its end."""
+        """Abandons a handler. It is cancelled for the effects `read` and `config`, or if none may run on. Others run to
+        their end.
+        """
         context.abandon()
         if context.effect in (Effect.READ, Effect.CONFIG) or self.config.abandoned_handlers == 0:
             task.cancel()
@@ -323,9 +325,9 @@ class Server:
         task.add_done_callback(self._abandoned.discard)
 
     async def push(self, report: Report[Q], message: Q, to: int | None = None) -> list[Acknowledgement]:
-        """Send a report to all apps, or to one, until it is acknowledged. Raises `PushError`.
+        """Sends a report to all apps, or to one, until it is acknowledged. Raises `PushError`.
 
-        It is queued before this first waits: to cancel it only means not to hear of the acknowledgements.
+        The report is queued before the first wait. Cancelling the call only loses the acknowledgements.
         """
         if report.code is None:
             raise ValueError(f"{report.name} has no code yet")
@@ -349,9 +351,9 @@ class Server:
         return [await asyncio.shield(push.ended) for push in pushes]
 
     def streams(self) -> AppStreams:
-        """The frames of raw bytes that apps send from now on; a later call takes over.
+        """Returns the frames of raw bytes that apps send from now on. A later call takes over.
 
-        While nobody takes them, they are dropped and counted; while the receiver is busy, apps are not read.
+        Without a receiver, frames are dropped and counted. While the receiver is busy, nothing is read from apps.
         """
         if self.app_streams is not None:
             self.app_streams.end()
@@ -359,7 +361,7 @@ class Server:
         return self.app_streams
 
     def put_stream(self, frame: AppStream) -> None:
-        """Hand on a frame of raw bytes, or drop it while nobody takes them."""
+        """Delivers a frame of raw bytes, or drops it without a receiver."""
         self.counters.stream_frames_in += 1
         streams = self.app_streams
         if streams is None:
@@ -378,7 +380,7 @@ class Server:
             peer.link.let_go("streams")
 
     async def send_stream(self, stream: Stream[B], message_id: int, content: B, to: int | None = None) -> int:
-        """Send a frame of one of the robot's streams; all else is as with `send_data`."""
+        """Sends a frame of a robot's stream, as `send_data` does."""
         if stream.code is None:
             raise ValueError(f"{stream.name} has no code yet")
         try:
@@ -388,11 +390,10 @@ class Server:
         return await self.send_data(stream.code, message_id, data, to)
 
     async def send_data(self, code: int, message_id: int, data: bytes, to: int | None = None) -> int:
-        """Send a frame of raw bytes to the data connections of one app, or of all. Raises `PushError`.
+        """Sends a frame of raw bytes to the data connections of one app, or of all. Raises `PushError`.
 
-        Gives how many took it. An app is named by a data connection, or by its command connection: the protocol ties
-        the two by nothing but the address, so that is only possible while it is the only app there; otherwise
-        `AmbiguousError`, and nothing is sent.
+        Returns the number of connections that took it. `to` is a data connection or a command connection. Only the
+        address ties the two together. If several apps share it, nothing is sent, with `AmbiguousError`.
         """
         frame = stream_frame(self.protocol, code, message_id)
         peers = self._data_audience(to)
@@ -423,11 +424,13 @@ class Server:
         return own
 
     async def run(self) -> None:
-        """Wait until the robot has been shut down."""
+        """Waits until the robot has been shut down."""
         await asyncio.shield(self._over)
 
     async def shutdown(self, grace: float) -> None:
-        """Take no more requests, answer those there are within the grace, and end. Never takes longer than that."""
+        """Ends the robot: takes no more requests and responds to the present ones. Returns after `grace` seconds at the
+        latest.
+        """
         duration("grace", grace)
         deadline = self.loop.time() + grace
         self._is_stopping = True
@@ -438,7 +441,7 @@ class Server:
             peer.drain()
         if tasks:
             await asyncio.wait(tasks, timeout=grace)
-            # What they have answered is sent in the next turn.
+            # Their responses are sent in the next turn.
             await asyncio.sleep(0)
         for peer in [*self._peers.values()]:
             peer.over()
@@ -456,26 +459,26 @@ class Server:
             self._over.set_result(None)
 
     async def __aenter__(self) -> Server:
-        """Listen at both ports."""
+        """Listens on both ports."""
         await self.bind()
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End at once."""
+        """Ends at once."""
         await self.shutdown(0)
 
 
 def _spread(policy: AckPolicy, connection: int) -> AckPolicy:
-    """Waits a little longer by connection, so that repetitions to many apps do not coincide."""
+    """Lengthens the wait a little by connection, so that repetitions to many apps do not coincide."""
     return replace(policy, timeout=policy.timeout * (1 + (connection % 32) / 256))
 
 
 def _networks(
     allow: Mapping[str, Any] | None,
 ) -> list[tuple[ipaddress.IPv4Network | ipaddress.IPv6Network, frozenset[Effect]]] | None:
-    """The networks, those first that hold fewest addresses."""
+    """Returns the networks, smallest first."""
     if allow is None:
         return None
     networks = [(ipaddress.ip_network(network), frozenset(effects)) for network, effects in allow.items()]

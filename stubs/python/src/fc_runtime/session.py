@@ -1,7 +1,7 @@
-"""The session: which answer belongs to which request, what is due, what has been seen before.
+"""The session: matches responses to requests, tracks due times, and detects repeated reports.
 
-No sockets and no clock: the session is told what happened and what time it is, and says what that means. App and robot
-use the same one: the one opens commands and receives reports, the other the reverse. Times are in seconds.
+It has no sockets and no clock. The caller passes in each event with its time in seconds, and the session returns its
+meaning. App and robot use the same class: the app opens commands and receives reports, the robot the reverse.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ T = TypeVar("T")
 
 
 class BusyFault(Exception):
-    """A request is not taken, for too many are in flight."""
+    """The error of a request at the limit of requests in flight."""
 
 
 class Incoming(Enum):
-    """What a frame means that has arrived."""
+    """Meaning of a received frame."""
 
     ANSWER = "answer"
-    """The answer to a request in flight, which has ended with it."""
+    """The response to a request in flight, which ends with it."""
     LATE = "late"
-    """It answers nothing that anybody waits for."""
+    """A response without a waiting request."""
     COMMAND = "command"
     """A command to handle."""
     REPORT = "report"
-    """A report to hand on."""
+    """A report to deliver."""
     REPEATED = "repeated"
-    """A report that has been handed on before: only to be acknowledged."""
+    """A report already delivered: only to acknowledge."""
     STREAM = "stream"
     """Raw bytes."""
 
@@ -49,11 +49,11 @@ class Due(Generic[T]):
     """A request that is due."""
 
     frame: FrameId
-    """Which one."""
+    """Its frame."""
     token: T
-    """What was given with it."""
+    """The token given with it."""
     again: bool
-    """It is to be sent again; otherwise it has ended without an answer."""
+    """`True` to send it again, `False` if it ended without a response."""
 
 
 class _Entry(Generic[T]):
@@ -75,10 +75,10 @@ class _Seen(NamedTuple):
 
 
 class Session(Generic[T]):
-    """Requests in flight, and reports handed on not long ago."""
+    """Requests in flight, and recently delivered reports."""
 
     def __init__(self, protocol: Protocol, limits: Limits, ack: AckPolicy, first_id: int) -> None:
-        """With nothing in flight."""
+        """Creates a session without requests."""
         self._protocol: Final = protocol
         self._id_max: Final = protocol.layout.id_max
         half_of_ids = self._id_max // 2 + 1
@@ -86,7 +86,7 @@ class Session(Generic[T]):
         self._next_id = first_id & self._id_max
         self._open: Final[dict[int, _Entry[T]]] = {}
         self._deadlines: list[tuple[float, int]] = []
-        # A peer repeats what is in flight, and as much of it as its own limit allows.
+        # A peer repeats its requests in flight, as many as its limit allows.
         most = max(limits.queued_reports, limits.in_flight, protocol.defaults.limits.in_flight)
         self._remembers: Final = min(most, half_of_ids)
         self._remembered_for: Final = 2 * ack.timeout * (ack.retries + 1)
@@ -96,16 +96,16 @@ class Session(Generic[T]):
 
     @property
     def in_flight(self) -> int:
-        """How many own requests are in flight."""
+        """Number of requests in flight."""
         return len(self._open)
 
     @property
     def is_full(self) -> bool:
-        """Whether no more requests are taken."""
+        """`True` at the limit of requests in flight."""
         return len(self._open) >= self._limit
 
     def open(self, kind: int, code: int, policy: AckPolicy, now: float, token: T) -> FrameId:
-        """Takes a request. Raises `BusyFault` if too many are in flight."""
+        """Opens a request. Raises `BusyFault` if too many are in flight."""
         if self.is_full:
             raise BusyFault
         while self._next_id in self._open:
@@ -118,7 +118,8 @@ class Session(Generic[T]):
         return frame
 
     def _schedule(self, entry: _Entry[T]) -> None:
-        # Most requests end before they are due: as many are forgotten as have gathered since the last time.
+        # Most requests end before they are due. Their deadlines are removed once there are as many of them as live
+        # ones.
         if len(self._deadlines) > 2 * len(self._open) + 16:
             self._deadlines = [(one.due, one.frame.id) for one in self._open.values()]
             heapq.heapify(self._deadlines)
@@ -126,7 +127,7 @@ class Session(Generic[T]):
             heapq.heappush(self._deadlines, (entry.due, entry.frame.id))
 
     def cancel(self, frame: FrameId) -> bool:
-        """Ends a request; false if it is not in flight."""
+        """Ends a request. Returns `False` if it is not in flight."""
         return self._end(frame) is not None
 
     def _end(self, frame: FrameId) -> _Entry[T] | None:
@@ -137,7 +138,7 @@ class Session(Generic[T]):
         return entry
 
     def receive(self, frame: FrameId, digest: bytes | None, now: float) -> tuple[Incoming, T | None]:
-        """What a frame means, and of an answer what was given with its request."""
+        """Returns the meaning of a frame and, for a response, the token of its request."""
         if frame.response:
             entry = self._end(frame)
             return (Incoming.LATE, None) if entry is None else (Incoming.ANSWER, entry.token)
@@ -163,7 +164,7 @@ class Session(Generic[T]):
         return False
 
     def handed_on(self, report: FrameId, digest: bytes | None, now: float) -> None:
-        """A report has reached somebody: it is remembered from now on."""
+        """Remembers a delivered report."""
         if self._remembers == 0:
             return
         if len(self._seen) == self._remembers:
@@ -175,11 +176,11 @@ class Session(Generic[T]):
         self._seen.append(_Seen(report, digest, self._connection, now))
 
     def reconnected(self) -> None:
-        """There is a new connection."""
+        """Notes a new connection."""
         self._connection += 1
 
     def due(self, now: float) -> Due[T] | None:
-        """The next request that is due, until there is none."""
+        """Returns the next request that is due; `None` if there is none."""
         while self._deadlines and self._deadlines[0][0] <= now:
             due, message_id = heapq.heappop(self._deadlines)
             entry = self._open.get(message_id)
@@ -196,7 +197,7 @@ class Session(Generic[T]):
 
     @property
     def next_due(self) -> float | None:
-        """When to ask what is due; perhaps too early, never too late."""
+        """Returns the time to call `due`; it may be too early, but never too late."""
         while self._deadlines:
             due, message_id = self._deadlines[0]
             entry = self._open.get(message_id)
@@ -206,11 +207,11 @@ class Session(Generic[T]):
         return None
 
     def requests(self) -> list[tuple[FrameId, T]]:
-        """All requests in flight, in the order in which they were opened."""
+        """Returns all requests in flight, in their order of opening."""
         return [(entry.frame, entry.token) for entry in self._open.values()]
 
     def end_if(self, ends: Callable[[FrameId, T], bool]) -> list[tuple[FrameId, T]]:
-        """Ends the requests for which this is true."""
+        """Ends and returns the requests for which `ends` returns true."""
         ended = [entry for entry in self._open.values() if ends(entry.frame, entry.token)]
         for entry in ended:
             del self._open[entry.frame.id]

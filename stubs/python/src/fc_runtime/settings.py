@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Check: TypeAlias = "Callable[[str, Any], None]"
 """Raises for a wrong value of the setting with this name."""
 
-# Quotations of wrong values are no longer than this.
+# Longest quotation of a wrong value.
 _LONGEST: Final = 60
 
 
@@ -26,7 +26,7 @@ def check_all(settings: Any, checks: Mapping[str, Check]) -> None:
 
 
 def wrong(name: str, value: object, expected: str) -> str:
-    """Says what was found and what is expected."""
+    """Returns a message with the value found and the one expected."""
     shown = repr(value)
     shown = shown if len(shown) <= _LONGEST else shown[:_LONGEST] + "…"
     return f"`{name}` is {shown}, expected {expected}"
@@ -38,7 +38,7 @@ def duration(name: str, value: Any) -> None:
 
 
 def keepalive(name: str, value: Any) -> None:
-    """Checks a time in seconds that the system takes for TCP probes."""
+    """Checks a time in seconds for TCP probes."""
     _number(name, value, 0, 32_767, "a number of seconds from 0 to 32767")
 
 

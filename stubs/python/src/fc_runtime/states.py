@@ -1,4 +1,4 @@
-"""Whether there is a connection, and what has happened over it."""
+"""The state of a connection, and its counters."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Connected:
     """There is a connection."""
 
     connects: int
-    """The how manieth since the client was made."""
+    """Number of connections made so far, including this one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,9 +22,9 @@ class Connecting:
     """There is no connection, and one is being made."""
 
     connects: int
-    """How many there have been."""
+    """Number of connections made so far."""
     why: Loss
-    """Why there is none."""
+    """Reason for having no connection."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,38 +32,38 @@ class Closed:
     """There will be no connection any more."""
 
     connects: int
-    """How many there have been."""
+    """Number of connections made so far."""
     why: Loss
-    """Why there is none."""
+    """Reason for having no connection."""
 
 
 ConnectionState: TypeAlias = "Connected | Connecting | Closed"
-"""Whether there is a connection."""
+"""The state of a connection."""
 
 
 @dataclass(slots=True)
 class ClientCounters:
-    """What has happened since the client was made."""
+    """Counters since the client was made."""
 
     answers: int = 0
     """Responses to calls in flight."""
     late_answers: int = 0
-    """Responses that nobody waited for."""
+    """Responses that came after their call had ended."""
     timeouts: int = 0
     """Calls without a response in time."""
     reports: int = 0
     """Reports queued and acknowledged."""
     reports_missed: int = 0
-    """Reports that a receiver missed, and another one took."""
+    """Reports that one receiver missed while another one took them."""
     repeated_reports: int = 0
-    """Reports that came again and were acknowledged again."""
+    """Repeated reports, which were only acknowledged."""
     reports_refused: int = 0
-    """Reports without a receiver that has room."""
+    """Reports left unacknowledged for lack of room or of a receiver."""
     reports_invalid: int = 0
-    """Reports that cannot be read as the type of their code."""
+    """Reports that do not fit the type of their code."""
     reports_late: int = 0
     """Reports that came later than their interval allows."""
     reports_out_of_order: int = 0
-    """Reports followed whose state came out of order."""
+    """Followed reports with a state out of order."""
     bad_frames: int = 0
     """Frames that cannot be read."""

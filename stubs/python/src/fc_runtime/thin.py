@@ -1,4 +1,4 @@
-"""A log that a flood does not flood, and that a program has without asking for it."""
+"""Limits the lines of a log, and logs errors by default."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ _WITHIN: Final = 60.0
 
 
 class Thin:
-    """At most five lines a minute for one cause."""
+    """Allows five lines a minute for one cause."""
 
     def __init__(self) -> None:
-        """None has been written."""
+        """Creates the count at zero."""
         self._since = float("-inf")
         self._lines = 0
         self._held = 0
 
     def line(self, now: float) -> str | None:
-        """What to write behind the next line: how many were left out; `None` if this one is left out too."""
+        """Returns the suffix of the next line, with the number of lines left out; `None` to leave this one out too."""
         if now - self._since >= _WITHIN:
             self._since, self._lines = now, 0
         if self._lines >= _AT_MOST:
@@ -31,14 +31,14 @@ class Thin:
 
 
 class ErrorsOnly(logging.Handler):
-    """Writes errors to the standard error while the program has no log of its own: they are faults of the program."""
+    """Writes errors to the standard error while the program has no log: they are bugs of the program."""
 
     def __init__(self) -> None:
-        """Nothing below an error."""
+        """Creates the handler for errors only."""
         super().__init__(logging.ERROR)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a line, unless somebody else does."""
+        """Writes a line, unless another handler does."""
         own = logging.getLogger(__package__).handlers
         if logging.lastResort is not None and not logging.root.handlers and own == [self]:
             logging.lastResort.handle(record)

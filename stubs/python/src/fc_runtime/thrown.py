@@ -1,4 +1,4 @@
-"""Errors of user code as the log has them: class and place, never the message, which may quote what was received."""
+"""Errors of user code as log text: class and place, never the message, which may quote received data."""
 
 from __future__ import annotations
 
@@ -18,40 +18,40 @@ _PACKAGES: Final = tuple(f"{os.sep}{name}{os.sep}" for name in ("site-packages",
 
 @functools.cache
 def _library() -> tuple[str, ...]:
-    """Where the standard library is."""
+    """Returns the folders of the standard library."""
     paths = sysconfig.get_paths()
     return tuple({paths[name] + os.sep for name in ("stdlib", "platstdlib")})
 
 
 def _is_user(file: str) -> bool:
-    """True unless a file is part of the runtime or of Python."""
+    """Returns `True` unless a file is part of the runtime or of Python."""
     return not file.startswith((_RUNTIME, "<frozen ")) and (_is_package(file) or not file.startswith(_library()))
 
 
 def _is_package(file: str) -> bool:
-    """True if a file is part of an installed package."""
+    """Returns `True` if a file is part of an installed package."""
     return any(folder in file for folder in _PACKAGES)
 
 
 def describe(error: BaseException, function: Any) -> str:
-    """The class of an error, and the innermost line of user code; where there is none, that of the function called."""
+    """Returns the class of an error with the innermost line of user code, or else the place of the function called."""
     found = [(one.f_code.co_filename, line, one.f_code.co_name) for one, line in traceback.walk_tb(error.__traceback__)]
     users = [one for one in found if _is_user(one[0])]
-    # A robot may be an installed package itself.
+    # A robot may be part of an installed package.
     own = [one for one in users if not _is_package(one[0])] or users
     file, line, name = own[-1] if own else _definition(function)
     return f"{_class(error)} at {file}:{line} in {name}" if file else _class(error)
 
 
 def _class(error: BaseException) -> str:
-    """The class of an error; of one of the runtime's own also its name, and the path of keys that the spec knows."""
+    """Returns the class of an error. For errors of the runtime it includes the name, and the path of known keys."""
     if isinstance(error, BodyError):
         return f"BodyError ({error.name} at `{error.path}`)" if error.path else f"BodyError ({error.name})"
     return f"FrameError ({error.name})" if isinstance(error, FrameError) else type(error).__name__
 
 
 def _definition(function: Any) -> tuple[str, int, str]:
-    """File, line and name of a function; an empty file where that is not known."""
+    """Returns file, line and name of a function; an empty file if unknown."""
     while isinstance(function, functools.partial):
         function = function.func
     plain = inspect.unwrap(getattr(function, "__func__", function))

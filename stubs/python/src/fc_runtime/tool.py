@@ -1,4 +1,4 @@
-"""A small tool: call a command of a protocol from the command line, and see what it answers and sets off."""
+"""A small tool that calls a command of a protocol from the command line, and shows its response and reports."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _WRONG_USE = 2
 
 
 def main(protocol: Protocol, arguments: Sequence[str] | None = None) -> int:
-    """Do what the command line says; 0 if all went well, 1 if not, 2 if it asks for what there is not."""
+    """Runs the command line. Returns 0 for success, 1 for an error, 2 for a wrong command line."""
     parser = _parser(protocol)
     asked = parser.parse_args(arguments)
     if asked.list:

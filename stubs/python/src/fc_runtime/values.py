@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .document import Tree
 
 Read: TypeAlias = "Callable[[Tree], Any]"
-"""Makes a value of a tree, or raises `BodyError`."""
+"""Makes a value from a tree, or raises `BodyError`."""
 Write: TypeAlias = "Callable[[Any, list[str]], None]"
 """Appends a value as JSON, or raises `BodyError`."""
 
@@ -34,7 +34,7 @@ def _wrong(wanted: str) -> BodyError:
 
 
 def _text(tree: Tree, wanted: str) -> str:
-    """The text of a string."""
+    """Returns the text of a string."""
     if type(tree) is not str:
         raise _wrong(wanted)
     if has_lone_surrogate(tree):
@@ -43,7 +43,7 @@ def _text(tree: Tree, wanted: str) -> str:
 
 
 def text_codec(key: Key) -> tuple[Read, Write]:
-    """Texts."""
+    """Returns reader and writer of texts."""
     check_length = length_check(key, "characters")
     pattern = None if key.pattern is None else re.compile(key.pattern, re.ASCII)
     is_plain = key.length is None and pattern is None
@@ -75,7 +75,7 @@ def text_codec(key: Key) -> tuple[Read, Write]:
 
 
 def base64_codec(key: Key) -> tuple[Read, Write]:
-    """Bytes as padded base64 of the standard alphabet."""
+    """Returns reader and writer of bytes: padded base64 with the standard alphabet."""
     check = length_check(key, "bytes")
 
     def read(tree: Tree) -> bytes:
@@ -84,7 +84,7 @@ def base64_codec(key: Key) -> tuple[Read, Write]:
             data = b64decode(text, validate=True)
         except (Base64Error, ValueError):
             data = None
-        # Neither padding too much nor bits that say nothing.
+        # Too much padding and non-zero spare bits are errors.
         if data is None or b64encode(data).decode("ascii") != text:
             raise BodyError(BodyErrorKind.BAD_BASE64, "send padded base64 of the standard alphabet")
         check(len(data))
@@ -100,7 +100,7 @@ def base64_codec(key: Key) -> tuple[Read, Write]:
 
 
 def bool_codec(key: Key) -> tuple[Read, Write]:
-    """Bools: as they are, in a string, or as 1 and 0."""
+    """Returns reader and writer of bools: plain, in a string, or as 1 and 0."""
     form, lenient = key.form, key.lenient_bool
     takes_bool = lenient or form is Form.PLAIN
     takes_text = lenient or form is Form.STRING
@@ -129,7 +129,7 @@ def bool_codec(key: Key) -> tuple[Read, Write]:
 
 
 def _number_text(key: Key, wanted: str) -> Callable[[Tree], str]:
-    """The spelling of a number in the form of its field."""
+    """Returns the spelling of a number in the form of its field."""
     takes_number = key.form is not Form.STRING or key.lenient_number
     takes_text = key.form is Form.STRING or key.lenient_number
 
@@ -159,7 +159,7 @@ def _range(key: Key, low: float | None, high: float | None) -> tuple[float | Non
 
 
 def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
-    """Integers of a type, within the bounds of their field."""
+    """Returns reader and writer of integers of a type, within the bounds of their field."""
     low, high = _range(key, scalar.low, scalar.high)
     assert low is not None  # noqa: S101
     assert high is not None  # noqa: S101
@@ -169,7 +169,7 @@ def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
     takes_number = key.form is not Form.STRING or key.lenient_number
 
     def read(tree: Tree) -> int:
-        # As most are sent: digits alone, and few of them.
+        # The usual case: a few digits.
         if type(tree) is Number and takes_number and len(tree) < _FEW_DIGITS and tree.isdigit():
             value = int(tree)
             if not low <= value <= high:
@@ -194,7 +194,7 @@ def integer_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
 
 
 def float_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
-    """Floats of a type, within the bounds of their field."""
+    """Returns reader and writer of floats of a type, within the bounds of their field."""
     low, high = _range(key, None, None)
     is_single = scalar.name == "f32"
     nearest = nearest_float if is_single else nearest_double
@@ -211,7 +211,7 @@ def float_codec(scalar: Scalar, key: Key) -> tuple[Read, Write]:
     is_any = low is None and high is None and not is_single
 
     def read(tree: Tree) -> float:
-        # As most are sent: in decimal, and without bounds.
+        # The usual case: decimal and without bounds.
         kind = type(tree)
         if is_any and ((kind is Number and takes_number) or (kind is str and takes_text and is_number(str(tree)))):
             value = float(str(tree))

@@ -1,4 +1,4 @@
-"""Waiting no longer than so long."""
+"""Waiting with a timeout."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ T = TypeVar("T")
 
 
 async def within(seconds: float | None, work: Awaitable[T]) -> T:
-    """What comes of some work, if it comes in time. Raises `asyncio.TimeoutError`, from 3.11 on plain `TimeoutError`.
+    """Returns the result of work that ends in time. Raises `asyncio.TimeoutError`, from 3.11 on plain `TimeoutError`.
 
-    `asyncio.wait_for` forgets before Python 3.12 that it was cancelled, if the work ends in the same turn: then who has
-    closed something finds it going on.
+    Before Python 3.12, `asyncio.wait_for` loses a cancellation if the work ends in the same turn. The cancelled task
+    would then continue.
     """
     task = asyncio.ensure_future(work)
     try:
@@ -33,6 +33,6 @@ async def within(seconds: float | None, work: Awaitable[T]) -> T:
 
 
 def _forget(task: asyncio.Future[T]) -> None:
-    """Take note of how it ended, so that nobody is told that nobody has."""
+    """Retrieves the exception, so that asyncio does not log it as never retrieved."""
     if not task.cancelled():
         task.exception()

@@ -1,4 +1,4 @@
-"""Coroutines that can do more than be awaited."""
+"""Coroutines with more than one way to run."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ T = TypeVar("T", covariant=True)
 
 
 class Work(Coroutine[Any, Any, T]):
-    """A coroutine, for `await` and for tasks. Its subclasses offer another way to run it."""
+    """A coroutine, for `await` and for tasks. Its subclasses add another way to run it."""
 
     def __init__(self, work: Coroutine[Any, Any, T], name: str) -> None:
-        """Runs this coroutine, under a name for warnings and logs."""
+        """Wraps this coroutine, with a name for warnings and logs."""
         named: Any = work
         named.__name__ = named.__qualname__ = name
         self._work: Final = work
 
     @property
     def is_begun(self) -> bool:
-        """Whether it has been awaited, or closed."""
+        """`True` if it has been awaited or closed."""
         return inspect.getcoroutinestate(self._work) != inspect.CORO_CREATED
 
     def send(self, value: Any, /) -> Any:
-        """Go on with it: for event loops."""
+        """Continues it, for event loops."""
         return self._work.send(value)
 
     def throw(self, kind: Any, value: Any = None, trace: Any = None, /) -> Any:
-        """Go on with an error: for event loops."""
+        """Continues it with an error, for event loops."""
         if value is None and trace is None:
             return self._work.throw(kind)
         return self._work.throw(kind, value, trace)
 
     def close(self) -> None:
-        """Do no more of it."""
+        """Closes it."""
         self._work.close()
 
     def __await__(self) -> Generator[Any, None, T]:
-        """Wait for its result."""
+        """Waits for its result."""
         return self._work.__await__()

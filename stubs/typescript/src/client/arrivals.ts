@@ -1,4 +1,4 @@
-// What each frame from the robot means.
+// Handles each frame from the robot according to its meaning.
 
 import { because, keys, textOf } from '../bodies.ts'
 import type { Received } from '../bodies.ts'
@@ -12,22 +12,24 @@ import type { Core } from './core.ts'
 import type { Link } from './link.ts'
 import type { Arrived } from './queues.ts'
 
-/** Beyond this much unsent, in bytes, reports are not acknowledged: a robot that does not read must not fill the app. */
+/**
+ * Most unsent bytes up to which reports are acknowledged: a robot that does not read must not fill the app's memory.
+ */
 const ACKNOWLEDGE_UP_TO = 256 * 1024
 
-/** When the last report of a kind came that comes at intervals. */
+/** Time of the last report of a kind that comes at intervals. */
 interface Beat {
   readonly atMost: number
   last: number | null
 }
 
-/** Deals with frames. */
+/** Handles received frames. */
 export class Arrivals {
   private readonly core: Core
   private readonly reports = new Map<number, AnyReportOf>()
   private readonly beats = new Map<number, Beat>()
 
-  /** Those of a connection. */
+  /** Creates the handler of a connection. */
   constructor(core: Core) {
     this.core = core
     for (const report of core.protocol.reports) {
@@ -38,12 +40,12 @@ export class Arrivals {
     }
   }
 
-  /** A connection begins; what came over another says nothing about its intervals. */
+  /** Starts a connection. Reports of an earlier connection do not count for the intervals. */
   begin(): void {
     for (const beat of this.beats.values()) beat.last = null
   }
 
-  /** Deals with one frame. */
+  /** Handles one frame. */
   arrive(frame: WholeFrame, link: Link): void {
     const { core } = this
     const { id } = frame
@@ -90,12 +92,14 @@ export class Arrivals {
         return
       case 'command':
       case 'stream':
-        // Apps serve no commands, and streams have a port of their own.
+        // Apps handle no commands, and streams use the data port.
         this.answer(link, id, results.protocol)
     }
   }
 
-  /** What tells a report from another one with its id. A short checksum does not: then its data is digested. */
+  /**
+   * Returns a key that tells reports with the same id apart. A short checksum is not enough: then the data is digested.
+   */
   private fingerprint({ digest, data }: WholeFrame): string | null {
     if (digest !== null && digest.length >= 32) return digest
     return data && hexOf(this.core.platform.algorithms.md5(data))
@@ -138,7 +142,7 @@ export class Arrivals {
     this.core.log.tellThinly('warn', 'report late', { code, id, since })
   }
 
-  /** Replies with nothing but a result; not at all where no response can carry it. */
+  /** Responds with a result alone, or not at all in a protocol without result codes. */
   private answer(link: Link, id: FrameId, result: ResultText): void {
     const { core } = this
     const canSay = core.bodies.hasResult || result === core.protocol.wire.results.success

@@ -1,30 +1,30 @@
-// What a client can be told beforehand.
+// Configuration of a client.
 
 import type { Log } from '../log.ts'
 import { callback, duration, flag, group, host, integer, kind, orNull } from '../settings.ts'
 import type { Check } from '../settings.ts'
 import type { Limits } from '../wire.ts'
 
-/** How to wait between attempts to connect; times in milliseconds. */
+/** Waits between attempts to connect; times in milliseconds. */
 export interface Backoff {
   /** The first wait. */
   readonly first: number
-  /** The longest wait. Each is twice the one before, minus up to a quarter at random. */
+  /** The longest wait. Each wait is twice the one before, minus a random part of up to a quarter. */
   readonly longest: number
-  /** Failed attempts in a row after which the connection is given up; `null`: never. */
+  /** Failed attempts in a row after which the client gives up; `null` for never. */
   readonly attempts: number | null
 }
 
-/** How waits are made unless told otherwise. */
+/** Default waits. */
 export const defaultBackoff: Backoff = { first: 100, longest: 10_000, attempts: null }
 
-/** When what is sent is compressed. */
+/** Settings for compressing sent data. */
 export interface Gzip {
   /** Least length of the data that is compressed, in bytes; 1024 unless set. */
   readonly fromBytes?: number
 }
 
-/** What a client can be told beforehand; times in milliseconds. Whatever is not set is the protocol's default. */
+/** Configuration of a client; times in milliseconds. An unset value means the protocol's default. */
 export interface ClientConfig {
   /** Name or address of the robot. */
   readonly host?: string
@@ -32,40 +32,43 @@ export interface ClientConfig {
   readonly commandPort?: number
   /** Port of streams. */
   readonly dataPort?: number
-  /** How long one attempt to connect may take: 3000 unless set. */
+  /** Time for one attempt to connect: 3000 unless set. */
   readonly connectTimeout?: number
-  /** How long a call waits for its response, reconnecting included. */
+  /** Time a call waits for its response, including reconnecting. */
   readonly callTimeout?: number
-  /** How to reconnect, or `null` to give up with the first loss. */
+  /** Waits between attempts to connect; `null` to give up at the first loss. */
   readonly reconnect?: Partial<Backoff> | null
-  /** After how much silence TCP asks whether the robot is still there, or `null` not to ask: 30 000 unless set. */
+  /** Silence before TCP probes the robot: 30 000 unless set; `null` for no probes. */
   readonly keepalive?: number | null
-  /** How long a connection may make no progress in the middle of a frame, or while the robot has something to read: 10 000. */
+  /**
+   * Time without progress inside a frame, or while the robot has bytes to read, before a connection is lost: 10 000
+   * unless set.
+   */
   readonly stallTimeout?: number
-  /** Bounds of everything that grows with what the robot sends. */
+  /** Limits on everything that grows with the bytes from the robot. */
   readonly limits?: Partial<Limits>
-  /** Most bytes of reports that wait for the app; as many as the longest body may have, unless set. */
+  /** Most bytes of reports waiting for the app; unless set, as many as the longest body. */
   readonly queuedBytes?: number
   /** Message id of the first call; the time of day unless set. */
   readonly firstId?: number
-  /** Compresses requests, for robots known to take it; `null`, the default, does not. */
+  /** Compresses requests, for robots that support it; `null`, the default, does not. */
   readonly gzip?: Gzip | null
-  /** Whether to verify the digests of what is received: yes, unless set. */
+  /** Verifies the digests of received frames: `true` unless set. */
   readonly verifyDigest?: boolean
-  /** Is told what happens. Unless set, errors are written to the console. */
+  /** Receives log messages. Unless set, errors are written to the console. */
   readonly log?: Log
 }
 
-/** What one call can be told. */
+/** Options of one call. */
 export interface CallOptions {
-  /** How long to wait for the response, in milliseconds. */
+  /** Time to wait for the response, in milliseconds. */
   readonly timeout?: number
   /**
-   * Whether to send the call once more when the connection was lost before its answer came. Unless set, only what merely
-   * reads; on anything else it may do it twice.
+   * Sends the call again if the connection is lost before its response comes. Unless set, only commands that just read
+   * are repeated. Any other command may then run twice.
    */
   readonly repeat?: boolean
-  /** Ends the call early: it rejects with the reason of the signal. The robot acts all the same once the request is on its way. */
+  /** Ends the call early: it rejects with the signal's reason. The robot still handles a request that has been sent. */
   readonly signal?: AbortSignal
 }
 

@@ -1,4 +1,4 @@
-// An app's connection to a robot: what a generated client stands on.
+// An app's connection to a robot: the base of a generated client.
 
 // Projects with an older `lib` have no `Symbol.asyncDispose`.
 /// <reference lib="esnext.disposable" preserve="true" />
@@ -26,10 +26,10 @@ import type { ConnectionState } from './life.ts'
 import type { Queue } from './queues.ts'
 import { Reports } from './reports.ts'
 
-/** A connection that has been begun: what a `Connection` is made of. */
+/** A started connection, from which a `Connection` is created. */
 export class Started {
   /**
-   * What its handles share.
+   * State shared by the connection's handles.
    *
    * @internal
    */
@@ -52,72 +52,72 @@ export async function dial(protocol: ProtocolOf, platform: Platform, config: Cli
   return new Started(core)
 }
 
-/** Returns at once and connects in the background: the first connection is waited for like another one after a loss. */
+/** Returns at once and connects in the background: the first connection is retried like one after a loss. */
 export function dialLater(protocol: ProtocolOf, platform: Platform, config: ClientConfig): Started {
   const core = new Core(protocol, platform, config)
   core.run(null)
   return new Started(core)
 }
 
-/** A report with a code that the spec does not have; its `value` is the JSON of its keys. */
+/** A report with a code that the spec does not declare. Its `value` is the JSON of its keys. */
 export interface UnknownReport extends Reported<'Unknown', JsonText> {}
 
-/** What a robot has answered to a call without types: a refusal is a response, too. */
+/** The response to a call without types. A refusal is a response, too. */
 export interface RawResponse {
-  /** The result, unless all went well. */
+  /** The result, if it is not success. */
   readonly refusal: Refusal | null
-  /** The own keys of the response. */
+  /** The response's keys, without the envelope. */
   readonly json: JsonText
 }
 
 /**
- * A connection to a robot's command port. After a loss it reconnects, unless told otherwise. Calls made meanwhile wait within
- * their timeout. Of the calls that were on their way, those that only read are sent once more with the same id; the others end
- * as `lost`, because nobody knows whether the robot has acted.
+ * A connection to a robot's command port. It reconnects after a loss, unless configured otherwise. Calls made meanwhile
+ * wait within their timeout. Calls in flight that only read are sent once more with the same id. The others end as
+ * `lost`, because the robot may or may not have acted.
  */
 export class Connection<Any> {
   private readonly core: Core
 
-  /** From `dial` or `dialLater`. */
+  /** Creates the connection from the result of `dial` or `dialLater`. */
   constructor({ core }: Started) {
     this.core = core
   }
 
-  /** Whether there is a connection at this moment, and why not. */
+  /** The present state of the connection, with the reason if there is none. */
   get state(): ConnectionState {
     return this.core.life.now
   }
 
   /**
-   * The states of the connection: the present one first, and then each that it comes to; the last is `closed`. An app that asks
-   * for the robot's state with each `connected` knows it also after the robot has been restarted.
+   * Yields the present state, then each change; the last state is `closed`. An app that queries the robot's state at
+   * each `connected` stays up to date after a restart of the robot.
    */
   states(): AsyncGenerator<ConnectionState, void, undefined> {
     return this.core.life.states()
   }
 
-  /** Waits until the connection has ended for good, and says why. */
+  /** Waits until the connection has ended for good. Returns the reason. */
   closed(): Promise<Loss> {
     return this.core.life.closed()
   }
 
-  /** How many calls are in flight. */
+  /** Number of calls in flight. */
   get inFlight(): number {
     return this.core.session.inFlight
   }
 
-  /** What the connection has seen so far. */
+  /** Returns a copy of the connection's counters. */
   counters(): Readonly<ClientCounters> {
     return { ...this.core.counters }
   }
 
-  /** Calls a command and waits for its response. Rejects with a `CallError` if there is no such response in time. */
+  /** Calls a command and waits for its response. Rejects with a `CallError` if none comes in time. */
   call<Request, Response, Body>(
     command: FollowedCommand<Request, Response, Body, string>,
     request: Request,
     options?: CallOptions,
   ): FollowableCall<Response, Body>
-  /** One that sets off no reports which could be followed. */
+  /** Calls a command that sets off no reports to follow. */
   call<Request, Response>(
     command: Command<Request, Response, string>,
     request: Request,
@@ -162,14 +162,14 @@ export class Connection<Any> {
     return Object.assign(response, { follow })
   }
 
-  /** Calls a command whose types are not known, such as one of a list of all. What the request is, its schema asks. */
+  /** Calls a command whose types are not known, such as one from a list. Its schema checks the request. */
   callAny(command: AnyCommand, request: unknown, options: CallOptions = {}): Promise<unknown> {
     return this.call(command as Command<unknown, unknown, string>, request, options)
   }
 
   /**
-   * Calls a code with a JSON object of the request's own keys. It is not sent again after a loss, and the result is not judged.
-   * Rejects with a `CallError` of any kind but `refused`.
+   * Calls a code with a JSON object of the request's keys. The call is not repeated after a loss, and its result is not
+   * an error. Rejects with a `CallError` of any kind except `refused`.
    */
   callRaw(code: number, json: JsonText, options: CallOptions = {}): Promise<RawResponse> {
     const { bodies } = this.core
@@ -202,7 +202,7 @@ export class Connection<Any> {
       const end = (): void => {
         signal?.removeEventListener('abort', stop)
       }
-      // What it breaks of its own constraints is told before anything is sent, and without a connection.
+      // A request that breaks a constraint is rejected before anything is sent, even without a connection.
       let first: Uint8Array | null = attempt('invalid_request', body)
       frame = core.begin(code, timeout, {
         repeat,
@@ -229,9 +229,9 @@ export class Connection<Any> {
     })
   }
 
-  /** All reports from here on. Reports are acknowledged only when a receiver has them. */
+  /** All reports from now on. A report is acknowledged only when a receiver has it. */
   reports(): Reports<Any | UnknownReport>
-  /** Those of one kind. */
+  /** Reports of one kind. */
   reports<Body>(report: Report<Body>): Reports<Body>
   reports<Body>(report?: Report<Body>): Reports<Any | UnknownReport> | Reports<Body> {
     const { core } = this
@@ -242,7 +242,7 @@ export class Connection<Any> {
     })
   }
 
-  /** Calls back with each report of a kind from here on. What it gives ends that. */
+  /** Calls `then` with each later report of a kind. Returns a function that ends this. */
   on<Body>(report: Report<Body>, then: (body: Body) => void): () => void {
     const reports = this.reports(report)
     const pump = async (): Promise<void> => {
@@ -257,7 +257,9 @@ export class Connection<Any> {
     }
   }
 
-  /** A connection to the robot's data port, made in the background, and as long as this one. Each call makes another one. */
+  /**
+   * Makes a connection to the robot's data port, in the background. It ends with this one. Each call makes another one.
+   */
   data(): DataConnection {
     return new DataConnection(this.core)
   }

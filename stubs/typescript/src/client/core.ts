@@ -1,4 +1,4 @@
-// What all handles of a connection share: its session, its queues, and the loop that keeps it up.
+// State shared by all handles of a connection: its session, its queues, and the loop that reconnects.
 
 import { Alarm, pause } from '../alarm.ts'
 import { Bodies, firstIdAt } from '../bodies.ts'
@@ -28,33 +28,33 @@ import type { Address } from './tries.ts'
 
 /** A call that has not ended. */
 export interface Flight {
-  /** Whether it may be sent once more after the connection was lost. */
+  /** `true` if it may be sent again after the connection was lost. */
   repeat: boolean
-  /** Not on its way; on its way; was on its way when the connection was lost, and is to be sent once more. */
+  /** `unsent`; `sent`: in flight; `again`: in flight when the connection was lost, to be sent once more. */
   progress: 'unsent' | 'sent' | 'again'
   /** Writes the body; throws a `BodyError`. */
   body(): Uint8Array
-  /** The answer has come. */
+  /** Receives the response. */
   answered(frame: WholeFrame): void
-  /** There will be none. */
+  /** Receives the error if there is no response. */
   failed(error: CallError): void
 }
 
-/** Settings with nothing left open. */
+/** Settings with all defaults filled in. */
 export interface Settings {
-  /** Addresses of both ports. */
+  /** Address of the command port. */
   readonly commands: Address
-  /** Of streams. */
+  /** Address of the data port. */
   readonly data: Address
-  /** How long a call waits. */
+  /** Time a call waits for its response, in milliseconds. */
   readonly callTimeout: number
-  /** How to reconnect. */
+  /** Waits between attempts to connect; `null` for no reconnecting. */
   readonly backoff: Backoff | null
-  /** How long a frame may make no progress. */
+  /** Time without progress inside a frame, in milliseconds. */
   readonly stallTimeout: number
-  /** From which length on data is compressed. */
+  /** Least length of data to compress, in bytes; `null` for no compression. */
   readonly gzipFrom: number | null
-  /** Bounds. */
+  /** Limits. */
   readonly limits: Limits
 }
 
@@ -72,27 +72,27 @@ function settle({ wire }: ProtocolOf, config: ClientConfig): Settings {
   }
 }
 
-/** Everything of a connection but its public face. */
+/** A connection without its public interface. */
 export class Core {
   /** The protocol. */
   readonly protocol: ProtocolOf
-  /** What it runs on. */
+  /** The platform. */
   readonly platform: Platform
-  /** What it was told. */
+  /** The settings. */
   readonly settings: Settings
   /** Frames. */
   readonly framing: Framing
   /** Bodies. */
   readonly bodies: Bodies
-  /** Whether there is a connection. */
+  /** State of the connection. */
   readonly life: Life = new Life()
-  /** Requests in flight, reports seen. */
+  /** Requests in flight, and reports to recognise when repeated. */
   readonly session: Session<Flight>
-  /** What waits for receivers of reports. */
+  /** Reports waiting for receivers. */
   readonly queues: Queues
-  /** What has been seen. */
+  /** Counters of the connection. */
   readonly counters: ClientCounters = newCounters()
-  /** Lines for people. */
+  /** The log. */
   readonly log: Logger
   private readonly arrivals: Arrivals
   private readonly alarm: Alarm
@@ -100,7 +100,7 @@ export class Core {
   private link: Link | null = null
   private why: Loss = { is: 'not_yet' }
 
-  /** Not begun. */
+  /** Creates the state, without connecting. */
   constructor(protocol: ProtocolOf, platform: Platform, config: ClientConfig) {
     const { wire } = protocol
     this.protocol = protocol
@@ -130,17 +130,17 @@ export class Core {
     )
   }
 
-  /** Milliseconds that never go back. */
+  /** Monotonic time, in milliseconds. */
   get now(): number {
     return this.platform.clock.now()
   }
 
-  /** Aborted when the connection has ended for good. */
+  /** Aborts when the connection has ended for good. */
   get ended(): AbortSignal {
     return this.ending.signal
   }
 
-  /** The first attempt to connect, which may fail; the loop goes on behind it. */
+  /** Makes the first attempt to connect, and rejects if it fails. The loop continues from there. */
   async connect(): Promise<void> {
     const transport = await attempt(this.platform, this.settings.commands, this.ended)
     this.run(transport)
@@ -162,7 +162,7 @@ export class Core {
     this.down(true)
   }
 
-  /** Serves one connection until it ends or is closed. Whether the robot was heard over it. */
+  /** Serves one connection until it ends or is closed. Returns `true` if the robot sent at least one frame. */
   private async serve(transport: Transport): Promise<boolean> {
     const link = new Link(this, transport, (frame) => {
       this.arrivals.arrive(frame, link)
@@ -176,7 +176,7 @@ export class Core {
     return link.heard
   }
 
-  /** A new connection, or `null` once there will be none. */
+  /** Makes a new connection. Returns `null` once there will be none. */
   private async connectAgain(tries: Tries): Promise<Transport | null> {
     for (;;) {
       const wait = tries.next()
@@ -197,7 +197,7 @@ export class Core {
 
   private up(link: Link): void {
     this.link = link
-    // The first connection may have been there, and counted, before.
+    // `dial` has already made and counted the first connection.
     if (this.life.now.is !== 'connected') this.life.connected()
     this.log.tell('info', 'connected', { connects: this.life.now.connects })
     this.session.reconnected()
@@ -209,7 +209,7 @@ export class Core {
     this.queues.connected()
   }
 
-  /** Ends the calls that must not be sent twice, and keeps the others for the next connection. */
+  /** Ends the calls that must not be sent twice. The others wait for the next connection. */
   private down(forGood: boolean): void {
     if (forGood) this.life.close(this.why)
     else {
@@ -242,7 +242,7 @@ export class Core {
     }
   }
 
-  /** Puts a call in flight. Gives what to cancel it with; throws a `CallError` if it cannot be. */
+  /** Puts a call in flight. Returns the id to cancel it with. Throws a `CallError` if that is not possible. */
   begin(code: number, timeout: number, flight: Flight): FrameId {
     const { now } = this.life
     if (now.is === 'closed') throw new CallError('closed', { loss: now.why })
@@ -257,11 +257,11 @@ export class Core {
     return frame
   }
 
-  /** Sends a call that has waited for a connection, or is new. */
+  /** Sends a call that is new or has waited for a connection. */
   private send(frame: FrameId, flight: Flight): void {
     const { link } = this
     if (!link) return
-    // Once more, and not as often as the connection is lost.
+    // A call is repeated only once, however often the connection is lost.
     if (flight.progress === 'again') flight.repeat = false
     flight.progress = 'sent'
     const made = this.framing.encode(frame, flight.body(), this.settings.gzipFrom)
@@ -277,7 +277,7 @@ export class Core {
     soon(made, go)
   }
 
-  /** Nobody waits for a call any more. */
+  /** Cancels a call that is no longer awaited. */
   cancel(frame: FrameId): void {
     this.session.cancel(frame)
   }

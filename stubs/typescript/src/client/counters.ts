@@ -1,36 +1,36 @@
-// What a connection has seen.
+// Counters of a connection.
 
-/** What a connection has seen since it was made, reconnecting included. */
+/** Counters of a connection since it was made, reconnecting included. */
 export interface ClientCounters {
   /** Bytes received. */
   bytesIn: number
   /** Bytes handed to the connection to be sent. */
   bytesOut: number
-  /** Answers that reached their call. */
+  /** Responses that reached their call. */
   answers: number
-  /** Answers nobody waited for any more. */
+  /** Responses that came after their call had ended. */
   lateAnswers: number
-  /** Calls that ended without an answer in time. */
+  /** Calls that ended without a response in time. */
   timeouts: number
-  /** Reports put into the queue of at least one receiver, and acknowledged. */
+  /** Reports queued for at least one receiver, and acknowledged. */
   reports: number
-  /** Reports that one receiver had no room for while another one took them, counted per receiver. */
+  /** Reports that did not fit into one receiver's queue while another receiver took them, counted per receiver. */
   reportsMissed: number
-  /** Reports that came again and were only acknowledged. */
+  /** Repeated reports, which were only acknowledged. */
   repeatedReports: number
-  /** Reports left unacknowledged because no receiver had room for them, or there was none. */
+  /** Reports left unacknowledged for lack of room or of a receiver. */
   reportsRefused: number
-  /** Reports refused because they do not read as what their code says, or have no proper envelope. */
+  /** Reports refused because their body or envelope is invalid. */
   reportsInvalid: number
-  /** Reports that came more than one and a half of their intervals after the last of their kind. */
+  /** Reports that came later than one and a half intervals after the last of their kind. */
   reportsLate: number
-  /** Reports that came in another order than the protocol says, counted by each who follows the process. */
+  /** Reports in an order that the spec does not allow. Each `Following` counts its own. */
   reportsOutOfOrder: number
   /** Frames that could not be read. */
   badFrames: number
 }
 
-/** Nothing seen. */
+/** Returns counters at zero. */
 export const newCounters = (): ClientCounters => ({
   bytesIn: 0,
   bytesOut: 0,

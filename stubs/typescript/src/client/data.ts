@@ -25,36 +25,38 @@ import { Subscription, Takers } from './subscription.ts'
 import type { StreamFrame } from './subscription.ts'
 import { Tries, attempt, lossOf } from './tries.ts'
 
-/** What arrived, or what is to be told in its place. */
+/** A received frame, or the error reported in its place. */
 export type FromData = StreamFrame | DataError
 
 /**
- * A connection to a robot's data port. It is made in the background as soon as the command connection is there, made again
- * after a loss and whenever the command connection was made again, and ends with it. Nothing is acknowledged there: what was on
- * its way when the connection was lost may have arrived or not, which is told once to the sender and once to the receiver, and
- * nothing is sent twice. Nothing is queued but one frame either way, unless something is subscribed to.
+ * A connection to a robot's data port. It is made in the background once the command connection exists, and ends with
+ * that. It is made again after a loss and after each new command connection.
+ *
+ * Frames are not acknowledged and never sent twice. After a loss, frames in flight may or may not have arrived. The
+ * loss is reported once to the sender and once to the receiver. Only one frame is queued in each direction, except for
+ * subscriptions.
  */
 export class DataConnection {
   private readonly core: Core
   private readonly life = new Life()
   private readonly takers = new Takers()
-  /** Something has arrived, or has been taken. */
+  /** Fires when a frame has arrived or has been taken. */
   private readonly changed = new Change()
   private readonly ending = new AbortController()
   private link: Link | null = null
-  /** What has arrived and not been taken. */
+  /** The received frame or error not yet taken. */
   private inbox: FromData | null = null
-  /** A loss that the receiver has not been told, after what is in the inbox. */
+  /** A loss to report to the receiver, after the frame in the inbox. */
   private gap: Loss | null = null
-  /** A loss that the sender has not been told, after frames were sent. */
+  /** A loss to report to the sender, after frames were sent. */
   private unsure: Loss | null = null
-  /** Something has been sent over this connection; a frame is on its way. */
+  /** `sent`: frames went over this connection. `sending`: one is being sent. */
   private sent = false
   private sending = false
   private turn: Promise<void> = Promise.resolve()
 
   /**
-   * That of a command connection.
+   * Creates the data connection of a command connection.
    *
    * @internal
    */
@@ -64,24 +66,24 @@ export class DataConnection {
     void this.drive()
   }
 
-  /** Whether there is a connection at this moment, and why not. */
+  /** The present state of the connection, with the reason if there is none. */
   get state(): ConnectionState {
     return this.life.now
   }
 
-  /** The states of the connection: the present one first, and then each that it comes to. */
+  /** Yields the present state, then each change. */
   states(): AsyncGenerator<ConnectionState, void, undefined> {
     return this.life.states()
   }
 
-  /** Waits until the connection has ended for good, and says why. */
+  /** Waits until the connection has ended for good. Returns the reason. */
   closed(): Promise<Loss> {
     return this.life.closed()
   }
 
   /**
-   * Waits until there is a connection, for no longer than the call timeout. A robot sends what it is asked for to the data
-   * connections that there are: wait for this one before asking. Rejects with a `DataError`.
+   * Waits until there is a connection, at most for the call timeout. A robot sends requested data only to existing data
+   * connections: call this before the request. Rejects with a `DataError`.
    */
   async connected(): Promise<void> {
     const { clock } = this.core.platform
@@ -95,8 +97,8 @@ export class DataConnection {
   }
 
   /**
-   * The next frame to which nobody has subscribed. As long as it is not taken, the robot is not read. Rejects with a `DataError`;
-   * unless that is `closed`, the next call goes on with the next frame.
+   * Returns the next frame without a subscription. Until it is taken, nothing more is read from the robot. Rejects with
+   * a `DataError`. After any kind except `closed`, the next call continues with the next frame.
    */
   async recv(): Promise<StreamFrame> {
     for (;;) {
@@ -113,10 +115,10 @@ export class DataConnection {
     }
   }
 
-  /** The frames of one stream from now on, in a queue of their own; they no longer come to `recv`. */
+  /** Subscribes to the frames of one stream. They get a separate queue and no longer come to `recv`. */
   subscribe<Content>(stream: Stream<Content>): Subscription<Content> {
     const taker = this.takers.enter(stream.code)
-    // What waits for room need not wait any more.
+    // A frame that waits for room in the inbox may now go to this subscription.
     this.changed.tell()
     const read = ({ data }: StreamFrame): Content => {
       if (stream.content === null) return data as Content
@@ -129,21 +131,21 @@ export class DataConnection {
     return new Subscription(this.takers, taker, this.life, read)
   }
 
-  /** How many frames to which nobody had subscribed have been dropped since this was last asked. */
+  /** Returns the number of frames without a subscription that were dropped since the last call. */
   missed(): number {
     return this.takers.takeSkipped()
   }
 
-  /** Sends a frame of a stream. Rejects with a `DataError`, `invalid` if the content breaks one of its own constraints. */
+  /** Sends a frame of a stream. Rejects with a `DataError`: `invalid` if the content breaks a constraint. */
   async sendStream<Content>(stream: Stream<Content>, id: number, content: Content): Promise<void> {
     if (stream.code === null) throw new TypeError('the stream has no code yet')
     await this.send(stream.code, id, bytesOfContent(stream, content))
   }
 
   /**
-   * Sends a frame of raw bytes: `code` says what they belong to, `id` which request they answer or prepare. Resolves when the
-   * transport has taken it. Without a connection it waits for one, for no longer than the call timeout. Rejects with a `DataError`:
-   * `lost` if this frame, or one before, may not have arrived.
+   * Sends a frame of raw bytes. `code` is the command that they belong to, `id` the request that they answer or
+   * prepare. Resolves when the transport has taken it. Waits for a connection up to the call timeout. Rejects with a
+   * `DataError`: `lost` if this frame, or one before, may not have arrived.
    */
   async send(code: number, id: number, data: Uint8Array): Promise<void> {
     const { framing } = this.core
@@ -192,7 +194,7 @@ export class DataConnection {
     if (loss) throw new DataError('lost', { loss })
   }
 
-  /** Closes the connection. A frame that is being sent is finished, if the robot takes it within a second. */
+  /** Closes the connection. A frame being sent is finished if the robot takes it within a second. */
   close(): void {
     const commands = this.core.life.now
     const why: Loss = commands.is === 'closed' ? commands.why : { is: 'closed_here' }
@@ -200,7 +202,7 @@ export class DataConnection {
     this.life.close(why)
     this.core.ended.removeEventListener('abort', this.follow)
     this.ending.abort()
-    // Who waits for the command connection need not wait any more.
+    // Wakes the tasks that wait for the command connection.
     this.core.life.changed.tell()
     this.link?.end(why)
     this.changed.tell()
@@ -213,7 +215,7 @@ export class DataConnection {
     await this.closed()
   }
 
-  /** The command connection has ended for good. */
+  /** Closes this connection when the command connection has ended for good. */
   private readonly follow = (): void => {
     this.close()
   }
@@ -251,7 +253,7 @@ export class DataConnection {
 
   private wasHeard = false
 
-  /** Waits for the command connection, and gives its number. */
+  /** Waits for the command connection. Returns its number. */
   private async commandsUp(): Promise<number> {
     const { life } = this.core
     for (;;) {
@@ -262,7 +264,7 @@ export class DataConnection {
     }
   }
 
-  /** Serves a connection until it ends, which it does when the command connection is no longer the one of this number. */
+  /** Serves a connection until it ends, or until the command connection has another number. */
   private async serve(transport: Transport, number: number): Promise<Loss> {
     const link = new Link(this.core, transport, (frame) => this.put(frame), { whole: false })
     this.link = link
@@ -278,7 +280,7 @@ export class DataConnection {
     void part()
     const why = await link.over
     this.link = null
-    // For who watches the command connection for this one.
+    // Wakes the tasks that watch the command connection for this one.
     commands.changed.tell()
     this.wasHeard = link.heard
     this.core.log.tell('info', 'data connection ended', { why: lossText(why) })
@@ -287,7 +289,7 @@ export class DataConnection {
     return why
   }
 
-  /** The connection that there was is lost, and what was on its way with it. */
+  /** Notes that the connection is lost, with the frames in flight. */
   private lose(why: Loss): void {
     if (this.sent && !this.sending) this.unsure = why
     this.sent = false
@@ -297,12 +299,12 @@ export class DataConnection {
     this.changed.tell()
   }
 
-  /** Leaves what has arrived for those who have subscribed to it, or for the receiver as soon as there is room. */
+  /** Delivers a received frame to its subscriptions, or to the inbox as soon as there is room. */
   private async put(frame: WholeFrame): Promise<void> {
     const arrived = this.judge(frame)
     if (this.takers.offer(frame.id.code, arrived)) return
     while ((this.inbox !== null || this.gap !== null) && !this.isClosed) {
-      // Subscribers do not wait for a receiver that there may not be.
+      // Subscribers must not wait for a receiver that may not exist.
       if (!this.takers.isEmpty) {
         this.takers.skip()
         return
@@ -334,7 +336,9 @@ export class DataConnection {
   }
 }
 
-/** The bytes of a frame of a stream. Raw bytes are returned unchecked. Throws a `DataError` for an invalid message. */
+/**
+ * Returns the bytes of a stream's frame. Raw bytes are returned unchecked. Throws a `DataError` for an invalid message.
+ */
 export function bytesOfContent<Content>(stream: Stream<Content>, content: Content): Uint8Array {
   if (stream.content === null) return content as Uint8Array
   try {

@@ -1,4 +1,4 @@
-// What can go wrong with connecting, with calls and with streams.
+// Errors of connecting, of calls and of streams.
 
 import type { ErrorName } from '../errors.ts'
 import type { BodyError, OwnLimit } from '../fault.ts'
@@ -8,17 +8,17 @@ import type { Declares } from '../operation.ts'
 import type { Refusal } from '../refusal.ts'
 import type { FrameId } from '../session.ts'
 
-/** What is wrong with a frame. */
+/** The error of a frame. */
 export type FrameFault = ErrorName | OwnLimit
 
-/** Why a connection could not be made. */
+/** The error of connecting. */
 export class ConnectError extends Error {
-  /** `io`: the network says no; `timeout`: no connection in time. */
+  /** `io`: the network refused; `timeout`: no connection in time. */
   readonly kind: 'io' | 'timeout'
   /** The network's reason. */
   readonly reason: string
 
-  /** Whom it was to connect to, and the network's reason. */
+  /** Creates the error for an address, with the network's reason. */
   constructor(kind: 'io' | 'timeout', address: string, reason: string) {
     super(
       kind === 'io'
@@ -31,7 +31,7 @@ export class ConnectError extends Error {
   }
 }
 
-/** What a call can end with, by the names that all implementations share. */
+/** Kinds of call errors, with the names that all implementations share. */
 export type CallErrorKind =
   | 'refused'
   | 'timeout'
@@ -43,19 +43,19 @@ export type CallErrorKind =
   | 'invalid_response'
   | 'frame'
 
-/** What goes with the kind of an error. */
+/** Details of an error, depending on its kind. */
 export interface CallErrorCause {
-  /** Of `refused`: what the robot has answered. */
+  /** For `refused`: the robot's result. */
   readonly refusal?: Refusal
-  /** Of `not_connected`, `closed` and `lost`: why there was no connection (any more). */
+  /** For `not_connected`, `closed` and `lost`: why there was no connection. */
   readonly loss?: Loss
-  /** Of `invalid_request` and `invalid_response`: what is wrong with it. */
+  /** For `invalid_request` and `invalid_response`: the error in the body. */
   readonly body?: BodyError
-  /** Of `frame`: what is wrong with it. */
+  /** For `frame`: the error in the frame. */
   readonly frame?: FrameFault
 }
 
-/** What each kind means, for people. */
+/** A description of each kind for people. */
 export const callErrorText: Readonly<Record<CallErrorKind, string>> = {
   refused: 'the robot has refused',
   timeout: 'no response in time',
@@ -71,26 +71,26 @@ export const callErrorText: Readonly<Record<CallErrorKind, string>> = {
 const why = ({ refusal, loss, body, frame }: CallErrorCause): string =>
   refusal?.message ?? (loss && lossText(loss)) ?? body?.message ?? frame ?? ''
 
-/** The standard `cause` of an error, which logs print below it, where there is one. */
+/** Returns the standard `cause` of an error, which logs print below it. */
 const options = ({ refusal, body }: CallErrorCause): ErrorOptions => {
   const cause = refusal ?? body
   return cause ? { cause } : {}
 }
 
-/** Why a call has no typed response. */
+/** The error of a call without a typed response. */
 export class CallError extends Error {
   /** The fixed name. */
   readonly kind: CallErrorKind
-  /** Of `refused`: what the robot has answered. */
+  /** For `refused`: the robot's result. */
   readonly refusal: Refusal | null
-  /** Of `not_connected`, `closed` and `lost`: why there was no connection (any more). */
+  /** For `not_connected`, `closed` and `lost`: why there was no connection. */
   readonly loss: Loss | null
-  /** Of `invalid_request` and `invalid_response`: what is wrong with it. */
+  /** For `invalid_request` and `invalid_response`: the error in the body. */
   readonly body: BodyError | null
-  /** Of `frame`: what is wrong with it. */
+  /** For `frame`: the error in the frame. */
   readonly frame: FrameFault | null
 
-  /** An error of this kind. */
+  /** Creates an error of this kind. */
   constructor(kind: CallErrorKind, cause: CallErrorCause = {}) {
     super([callErrorText[kind], why(cause)].filter((part) => part !== '').join(': '), options(cause))
     this.name = 'CallError'
@@ -101,20 +101,20 @@ export class CallError extends Error {
     this.frame = cause.frame ?? null
   }
 
-  /** Which of the errors that a command declares the robot has answered with; `null` for any other. */
+  /** Returns the name of the command's declared error that the robot responded with; `null` for any other. */
   declared<Failure extends string>(command: Declares<Failure>): Failure | null {
     return this.refusal?.declared(command) ?? null
   }
 }
 
-/** Why a process can be followed no further, although it may go on. */
+/** The reason why following a process has ended, although the process may go on. */
 export class FollowError extends Error {
   /** The connection is closed for good. */
   readonly kind: 'closed'
-  /** Why. */
+  /** Reason. */
   readonly loss: Loss
 
-  /** An end for this reason. */
+  /** Creates the error for a loss. */
   constructor(loss: Loss) {
     super(`the connection is closed: ${lossText(loss)}; the process may go on`)
     this.name = 'FollowError'
@@ -123,45 +123,45 @@ export class FollowError extends Error {
   }
 }
 
-/** What can go wrong on a data connection. */
+/** Kinds of errors on a data connection. */
 export type DataErrorKind =
-  /** The connection was lost, and is made again: frames may be missing here, or may not have arrived. */
+  /** The connection was lost and is made again. Frames may be missing here, or may not have arrived. */
   | 'lost'
   /** No connection in time; the frame has not been sent. */
   | 'not_connected'
   /** The connection is closed for good. */
   | 'closed'
-  /** A frame could not be read, and was skipped; or the one to be sent is too long. */
+  /** A received frame could not be read and was skipped, or the frame to send is too long. */
   | 'frame'
   /** The robot has refused a frame sent to it. */
   | 'refused'
   /** A frame arrived that is not a stream frame. */
   | 'unexpected_frame'
-  /** What a frame carries, or is to carry, is not what its stream does. */
+  /** The content of a frame does not fit its stream. */
   | 'invalid'
 
-/** What goes with the kind of an error. */
+/** Details of an error, depending on its kind. */
 export interface DataErrorCause extends CallErrorCause {
-  /** The frame that it is about. */
+  /** The frame concerned. */
   readonly id?: FrameId
 }
 
-/** Why a frame of a stream could not be sent, or what came instead of one. */
+/** The error of sending or receiving a frame of a stream. */
 export class DataError extends Error {
   /** The fixed name. */
   readonly kind: DataErrorKind
-  /** Why there is no connection, if that is what is wrong. */
+  /** The loss, for errors of a missing connection. */
   readonly loss: Loss | null
-  /** What is wrong with what a frame carries. */
+  /** The error in the content of a frame. */
   readonly body: BodyError | null
-  /** What is wrong with a frame. */
+  /** The error of the frame. */
   readonly frame: FrameFault | null
-  /** What the robot has answered. */
+  /** The robot's refusal. */
   readonly refusal: Refusal | null
-  /** The frame that it is about, if it is about one. */
+  /** The frame concerned, if any. */
   readonly id: FrameId | null
 
-  /** An error of this kind. */
+  /** Creates an error of this kind. */
   constructor(kind: DataErrorKind, cause: DataErrorCause = {}) {
     super([kind, why(cause)].filter((part) => part !== '').join(': '), options(cause))
     this.name = 'DataError'

@@ -1,4 +1,4 @@
-// What a command has set off, followed to its end: the answer, and then a typed stream of reports.
+// Follows a command to its end: the response, then a typed stream of the reports that it set off.
 
 import type { Loss } from '../loss.ts'
 import type { Report, StateOf } from '../operation.ts'
@@ -20,12 +20,12 @@ export type Followed<Body> =
   | { readonly is: 'resumed' }
 
 /**
- * A command that has been answered, and the reports that it sets off, for `for await`. It ends after a final state, a failure
- * or a `FollowError`. Where the protocol says neither which state is the last nor which are failures, it goes on until it is
- * closed. Reports are acknowledged when they are in its queue, and other receivers get them too.
+ * The reports that a command sets off, for `for await`. It ends after a final state, a failure or a `FollowError`. If
+ * the spec declares no final states and no failures, it continues until it is closed. Reports are acknowledged once
+ * queued here. Other receivers get them too.
  */
 export class Following<Response, Body> implements AsyncIterableIterator<Followed<Body>> {
-  /** What the robot has answered to the command. */
+  /** The robot's response to the command. */
   readonly answer: Response
   private readonly core: Core
   private readonly queue: Queue
@@ -47,7 +47,7 @@ export class Following<Response, Body> implements AsyncIterableIterator<Followed
     this.belongs = belongs
   }
 
-  /** What comes next. Rejects with a `FollowError` once the connection is closed for good. */
+  /** Returns the next event. Rejects with a `FollowError` once the connection is closed for good. */
   async next(): Promise<IteratorResult<Followed<Body>, undefined>> {
     while (!this.isOver) {
       const event = this.queue.next()
@@ -75,7 +75,7 @@ export class Following<Response, Body> implements AsyncIterableIterator<Followed
     return { done: true, value: undefined }
   }
 
-  /** What a report means for the process; `null` if it belongs to another call. */
+  /** Returns a report's meaning for the process; `null` if it belongs to another call. */
   private place({ value }: Arrived): Followed<Body> | null {
     const report = value as Body
     if (!this.belongs(report)) return null
@@ -98,20 +98,20 @@ export class Following<Response, Body> implements AsyncIterableIterator<Followed
     this.core.log.tellThinly('info', 'report out of order', { name: this.report.name, code: this.report.code })
   }
 
-  /** Follows no further. */
+  /** Ends following. */
   close(): void {
     if (this.isOver) return
     this.isOver = true
     this.core.queues.leave(this.queue)
   }
 
-  /** Follows no further. */
+  /** Ends following. */
   return(): Promise<IteratorResult<Followed<Body>, undefined>> {
     this.close()
     return Promise.resolve({ done: true, value: undefined })
   }
 
-  /** Itself. */
+  /** Returns itself. */
   [Symbol.asyncIterator](): this {
     return this
   }
@@ -120,8 +120,8 @@ export class Following<Response, Body> implements AsyncIterableIterator<Followed
 /** A call of a command that sets off reports. */
 export interface FollowableCall<Response, Body> extends Promise<Response> {
   /**
-   * Waits for the response, and then follows the reports that the command sets off, from the moment in which it was sent. To be
-   * called at once: `client.startDrive(request).follow()`.
+   * Waits for the response, then follows the reports that the command sets off, from the moment it was sent. Call this
+   * at once: `client.startDrive(request).follow()`.
    */
   follow(): Promise<Following<Response, Body>>
 }

@@ -1,20 +1,22 @@
-// Whether there is a connection: as a value, and as a stream of its changes.
+// The state of a connection, as a value and as a stream of its changes.
 
 import { Change } from '../alarm.ts'
 import type { Loss } from '../loss.ts'
 
-/** Whether there is a connection at this moment, and why not. `connects` counts the connections made so far. */
+/**
+ * The present state of a connection, with the reason if there is none. `connects` counts the connections made so far.
+ */
 export type ConnectionState =
   /** There is a connection. */
   | { readonly is: 'connected'; readonly connects: number }
-  /** There is none, and one is being made: the first, or another one after a loss. */
+  /** There is no connection. The first one, or another one after a loss, is being made. */
   | { readonly is: 'connecting'; readonly connects: number; readonly why: Loss }
-  /** There will be none any more. */
+  /** There will be no connection any more. */
   | { readonly is: 'closed'; readonly connects: number; readonly why: Loss }
 
-/** The state of a connection, and all who watch it. */
+/** The state of a connection, with its watchers. */
 export class Life {
-  /** Told at each change. */
+  /** Fires at each change. */
   readonly changed: Change = new Change()
   private state: ConnectionState = { is: 'connecting', connects: 0, why: { is: 'not_yet' } }
 
@@ -23,17 +25,17 @@ export class Life {
     return this.state
   }
 
-  /** There is one more connection. */
+  /** Notes a new connection. */
   connected(): void {
     this.turn({ is: 'connected', connects: this.state.connects + 1 })
   }
 
-  /** There is no connection, and another one is being made. */
+  /** Notes a loss: another connection is being made. */
   lost(why: Loss): void {
     this.turn({ is: 'connecting', connects: this.state.connects, why })
   }
 
-  /** There will be none. The first reason counts. */
+  /** Notes the end. The first reason counts. */
   close(why: Loss): void {
     this.turn({ is: 'closed', connects: this.state.connects, why })
   }
@@ -44,7 +46,7 @@ export class Life {
     this.changed.tell()
   }
 
-  /** The present state, and then each that it comes to; who is slow gets the latest. Nothing after the end. */
+  /** Yields the present state, then each change; a slow reader gets the latest. Ends after the last state. */
   async *states(): AsyncGenerator<ConnectionState, void, undefined> {
     let told: ConnectionState | null = null
     for (;;) {
@@ -55,7 +57,7 @@ export class Life {
     }
   }
 
-  /** Waits for the end, and says why. */
+  /** Waits for the end. Returns the reason. */
   async closed(): Promise<Loss> {
     for (;;) {
       if (this.state.is === 'closed') return this.state.why

@@ -1,4 +1,4 @@
-// One connection's bytes: reads what comes, and writes what is to be sent.
+// The bytes of one connection: reads received ones and writes those to send.
 
 import { Alarm } from '../alarm.ts'
 import { FrameStream } from '../frames.ts'
@@ -9,10 +9,13 @@ import type { Platform, Transport } from '../platform.ts'
 import type { Settings } from './core.ts'
 import { brokenBy } from './tries.ts'
 
-/** What a frame has to bring beside the stall timeout, in bytes per second: a wrong length must not pass for progress. */
+/**
+ * Least rate of a frame, in bytes per second, after a grace of one stall timeout: a wrong length must not pass for
+ * progress.
+ */
 const LEAST_RATE = 16 * 1024
 
-/** What a link counts. */
+/** Counters of a link. */
 export interface LinkCounters {
   /** Bytes received. */
   bytesIn: number
@@ -20,31 +23,31 @@ export interface LinkCounters {
   badFrames: number
 }
 
-/** What a link needs of the connection that it is one of. */
+/** The parts of a connection that a link uses. */
 export interface LinkOwner {
-  /** Frames. */
+  /** The framing. */
   readonly framing: Framing
-  /** Time. */
+  /** The platform's clock. */
   readonly platform: Pick<Platform, 'clock'>
-  /** How long a frame may make no progress. */
+  /** Time without progress inside a frame. */
   readonly settings: Pick<Settings, 'stallTimeout'>
-  /** What has been seen. */
+  /** Counters of the connection. */
   readonly counters: LinkCounters
 }
 
-/** Whether a frame in full counts as stalled though it goes on: on the command port, not on that of streams. */
+/** Rules for stalled frames, which differ between the command port and the data port. */
 export interface LinkRules {
-  /** Whether it does. */
+  /** `true` if a frame must keep up the least rate, as on the command port. Otherwise any byte is progress. */
   readonly whole: boolean
 }
 
 /** One connection to the robot. */
 export class Link {
-  /** What is to be sent. */
+  /** Bytes to send. */
   readonly outlet: Outlet
-  /** Resolves when the connection has ended, to why. */
+  /** Resolves to the reason when the connection has ended. */
   readonly over: Promise<Loss>
-  /** At least one frame has come over it. */
+  /** At least one frame has been received. */
   heard = false
   private readonly transport: Transport
   private readonly owner: LinkOwner
@@ -55,10 +58,10 @@ export class Link {
   private readonly read: Promise<void>
   private resolve: (why: Loss) => void = () => {}
   private isOver = false
-  /** When the frame that is arriving began, and when bytes of it last came. */
+  /** Time the current frame began, and time of its last bytes. */
   private begun: { at: number; last: number } | null = null
 
-  /** Hands on each frame to `take`, and reads on when that is done. */
+  /** Passes each frame to `take`, and reads on when that is done. */
   constructor(
     owner: LinkOwner,
     transport: Transport,
@@ -106,7 +109,7 @@ export class Link {
       for (;;) {
         const chunk = await transport.read()
         if (this.isOver) {
-          // Only to see that the robot has closed its side, too.
+          // Reads on only to notice that the robot has closed its side too.
           if (chunk === null) return
           continue
         }
@@ -142,7 +145,7 @@ export class Link {
     }
   }
 
-  /** What has come ends inside a frame, or not. */
+  /** Watches the frame that has begun, if any. */
   private watch(): void {
     if (this.stream.pending === 0) {
       this.begun = null
@@ -153,7 +156,7 @@ export class Link {
     this.alarm.look()
   }
 
-  /** The connection has ended. The first reason counts. */
+  /** Notes the end of the connection. The first reason counts. */
   end(why: Loss): void {
     if (this.isOver) return
     this.isOver = true
@@ -161,13 +164,13 @@ export class Link {
     this.resolve(why)
   }
 
-  /** Ends it at once. */
+  /** Closes the connection at once. */
   cut(): void {
     this.outlet.stop()
     this.transport.close()
   }
 
-  /** Sends what is left first. */
+  /** Sends the remaining bytes, then closes the connection. */
   async goodbye(): Promise<void> {
     await goodbye(this.transport, this.outlet, this.owner.platform.clock, this.read)
   }

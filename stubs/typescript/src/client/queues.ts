@@ -1,32 +1,32 @@
-// Reports on their way to the app: what waits for each of its receivers.
+// Reports waiting for the app, in a queue for each receiver.
 
 import { Change } from '../alarm.ts'
 import type { Loss } from '../loss.ts'
 
-/** A report that has arrived and been read. */
+/** A decoded report. */
 export interface Arrived {
   /** Command code. */
   readonly code: number
   /** Message id. */
   readonly id: number
-  /** When it was sent, if it says so. */
+  /** Time the report was sent; `null` if it carries no time. */
   readonly time: number | null
-  /** Its name among those of the spec; `null` if the spec does not have it. */
+  /** Name of the report; `null` if the spec does not declare it. */
   readonly name: string | null
-  /** What it says; its text if the spec does not have it. */
+  /** The report's value, or its JSON text if the spec does not declare it. */
   readonly value: unknown
   /** Bytes of its body. */
   readonly size: number
 }
 
-/** What comes to who follows a process. */
+/** An event for the receiver that follows a process. */
 export type QueueEvent =
   | { readonly is: 'missed'; readonly count: number }
   | { readonly is: 'lost'; readonly loss: Loss }
   | { readonly is: 'connected' }
   | { readonly is: 'report'; readonly report: Arrived }
 
-/** What a receiver has not got, between one report and the next. */
+/** Events between one report and the next. */
 interface Before {
   missed: number
   lost: Loss | null
@@ -35,31 +35,31 @@ interface Before {
 
 const nothing = (): Before => ({ missed: 0, lost: null, connected: false })
 
-/** What waits for one receiver. */
+/** Reports waiting for one receiver. */
 export class Queue {
-  /** The only code that it takes; `null` for any. */
+  /** Code of the reports it takes; `null` for all. */
   readonly code: number | null
-  /** Told when something has come. */
+  /** Fires when a report has arrived. */
   readonly changed: Change = new Change()
-  /** Bytes that wait. */
+  /** Bytes waiting. */
   bytes = 0
-  /** Reports that did not fit, since it was last asked. */
+  /** Reports that did not fit, since the last query. */
   missed = 0
   private readonly reports: { before: Before; report: Arrived }[] = []
   private since: Before = nothing()
   private isCut = false
 
-  /** An empty queue for reports of a code, or of any. */
+  /** Creates an empty queue for reports of one code, or of all. */
   constructor(code: number | null) {
     this.code = code
   }
 
-  /** How many reports wait. */
+  /** Number of waiting reports. */
   get length(): number {
     return this.reports.length
   }
 
-  /** Puts a report behind the others. */
+  /** Appends a report. */
   push(report: Arrived): void {
     this.bytes += report.size
     this.reports.push({ before: this.since, report })
@@ -67,13 +67,13 @@ export class Queue {
     this.changed.tell()
   }
 
-  /** There was no room for a report. */
+  /** Counts a report without room. */
   miss(): void {
     this.missed++
     this.since.missed++
   }
 
-  /** The connection has been lost: notes it where the next report will come. */
+  /** Notes a lost connection in front of the next report. */
   cut(loss: Loss): void {
     this.isCut = true
     this.since.lost = loss
@@ -81,14 +81,14 @@ export class Queue {
     this.changed.tell()
   }
 
-  /** There is a connection again. */
+  /** Notes a new connection. */
   joined(): void {
     this.since.connected ||= this.isCut
     this.isCut = false
     this.changed.tell()
   }
 
-  /** The oldest report. */
+  /** Returns the oldest report. */
   pop(): Arrived | null {
     const first = this.reports.shift()
     if (!first) return null
@@ -96,7 +96,7 @@ export class Queue {
     return first.report
   }
 
-  /** What comes next, the reports and what was between them. */
+  /** Returns the next event: a report, or one that happened before it. */
   next(): QueueEvent | null {
     const before = this.reports[0]?.before ?? this.since
     if (before.missed > 0) {
@@ -124,33 +124,33 @@ export class Queues {
   private readonly limit: number
   private readonly bytesLimit: number
 
-  /** So many reports, and bytes of them, may wait for each. */
+  /** Creates the queues. Limits apply to the number of reports in each queue, and to their bytes. */
   constructor(limit: number, bytesLimit: number) {
     this.limit = limit
     this.bytesLimit = bytesLimit
   }
 
-  /** One more receiver, of reports of this code or of any. */
+  /** Adds a receiver for reports of one code, or of all. */
   enter(code: number | null): Queue {
     const queue = new Queue(code)
     this.receivers.add(queue)
     return queue
   }
 
-  /** It takes no more. */
+  /** Removes a receiver. */
   leave(queue: Queue): void {
     this.receivers.delete(queue)
     queue.changed.tell()
   }
 
-  /** Whether it still takes reports. */
+  /** Returns `true` if the queue still takes reports. */
   has(queue: Queue): boolean {
     return this.receivers.has(queue)
   }
 
   /**
-   * Gives a report to all receivers that have room for it: acknowledge it. Says how many had none; `null` if nobody has got
-   * it: leave it to the robot to send it again.
+   * Gives a report to all receivers with room for it, and returns the number without room. The caller then acknowledges
+   * it. Returns `null` if no receiver took it: without an acknowledgement the robot sends it again.
    */
   push(report: Arrived): number | null {
     const asked = [...this.receivers].filter(({ code }) => code === null || code === report.code)
@@ -161,17 +161,17 @@ export class Queues {
     return asked.length - takers.length
   }
 
-  /** The connection has been lost. */
+  /** Notes a lost connection. */
   lost(loss: Loss): void {
     for (const queue of this.receivers) queue.cut(loss)
   }
 
-  /** There is a connection again. */
+  /** Notes a new connection. */
   connected(): void {
     for (const queue of this.receivers) queue.joined()
   }
 
-  /** Wakes all that wait, as when the connection is closed. */
+  /** Wakes all receivers, for example when the connection is closed. */
   wake(): void {
     for (const queue of this.receivers) queue.changed.tell()
   }

@@ -4,8 +4,8 @@ import type { Core } from './core.ts'
 import type { Arrived, Queue } from './queues.ts'
 
 /**
- * The reports from its creation on, for `for await`. Each receiver gets every report and has a queue of its own. They have been
- * acknowledged. It ends with the connection, once its queue is empty.
+ * The reports from its creation on, for `for await`. Each receiver has a separate queue and gets every report. The
+ * reports are already acknowledged. The iteration ends with the connection, once the queue is empty.
  */
 export class Reports<T> implements AsyncIterableIterator<T> {
   private readonly core: Core
@@ -23,7 +23,7 @@ export class Reports<T> implements AsyncIterableIterator<T> {
     this.read = read
   }
 
-  /** The next report. */
+  /** Returns the next report. */
   async next(): Promise<IteratorResult<T, undefined>> {
     for (;;) {
       const report = this.queue.pop()
@@ -34,25 +34,28 @@ export class Reports<T> implements AsyncIterableIterator<T> {
     }
   }
 
-  /** How many reports did not fit into the queue since this was last asked, while another receiver took them. */
+  /**
+   * Returns the number of reports since the last call that did not fit into this queue while another receiver took
+   * them.
+   */
   missed(): number {
     const { missed } = this.queue
     this.queue.missed = 0
     return missed
   }
 
-  /** Takes no more. */
+  /** Ends receiving. */
   close(): void {
     this.core.queues.leave(this.queue)
   }
 
-  /** Takes no more. */
+  /** Ends receiving. */
   return(): Promise<IteratorResult<T, undefined>> {
     this.close()
     return Promise.resolve({ done: true, value: undefined })
   }
 
-  /** Itself. */
+  /** Returns itself. */
   [Symbol.asyncIterator](): this {
     return this
   }

@@ -1,4 +1,4 @@
-// Receivers of one stream each, with a queue of their own.
+// Receivers of one stream each, with separate queues.
 
 import { Change } from '../alarm.ts'
 import type { Loss } from '../loss.ts'
@@ -10,7 +10,7 @@ const QUEUE = 4
 
 /** A frame of raw bytes. */
 export interface StreamFrame {
-  /** Command code of what the bytes belong to. */
+  /** Code of the command that the bytes belong to. */
   readonly code: number
   /** Message id of the request that asked for them. */
   readonly id: number
@@ -18,72 +18,72 @@ export interface StreamFrame {
   readonly data: Uint8Array
 }
 
-/** A frame of a stream, read. */
+/** A decoded frame of a stream. */
 export interface StreamItem<Content> {
-  /** Message id, that of the request which it belongs to. */
+  /** Message id of the request that it belongs to. */
   readonly id: number
-  /** What it carries. */
+  /** The content. */
   readonly content: Content
 }
 
-/** What waits for one receiver. */
+/** Frames waiting for one receiver. */
 export interface Taker {
   /** The code of its stream. */
   readonly code: number | null
-  /** What waits. */
+  /** Frames and errors that wait. */
   readonly waiting: (StreamFrame | DataError)[]
-  /** Frames that have made way. */
+  /** Number of frames dropped for later ones. */
   missed: number
 }
 
 /** The queues of all receivers of a data connection. */
 export class Takers {
-  /** Something has come. */
+  /** Fires when a frame or error has arrived. */
   readonly changed: Change = new Change()
   private readonly all = new Set<Taker>()
   private skipped = 0
 
-  /** One more. */
+  /** Adds a receiver. */
   enter(code: number | null): Taker {
     const taker: Taker = { code, waiting: [], missed: 0 }
     this.all.add(taker)
     return taker
   }
 
-  /** It takes no more. */
+  /** Removes a receiver. */
   leave(taker: Taker): void {
     this.all.delete(taker)
     this.changed.tell()
   }
 
-  /** Whether it still takes frames. */
+  /** Returns `true` if the receiver still takes frames. */
   has(taker: Taker): boolean {
     return this.all.has(taker)
   }
 
-  /** Whether there is none. */
+  /** `true` if there is no receiver. */
   get isEmpty(): boolean {
     return this.all.size === 0
   }
 
-  /** Tells all to look again. */
+  /** Wakes all receivers. */
   tell(): void {
     this.changed.tell()
   }
 
-  /** A frame was dropped to which nobody had subscribed. */
+  /** Counts a dropped frame without a subscription. */
   skip(): void {
     this.skipped++
   }
 
-  /** How many there were since this was last asked. */
+  /** Returns the number of such frames since the last call. */
   takeSkipped(): number {
     const { skipped } = this
     this.skipped = 0
     return skipped
   }
 
-  /** Hands out what has arrived; `false` if nobody takes such frames. */
+  /** Hands out a frame or an error. Returns `false` if no receiver takes such frames. */
   offer(code: number, arrived: StreamFrame | DataError): boolean {
     const isOfStream = !(arrived instanceof DataError) || arrived.kind === 'frame'
     const takers = [...this.all].filter((taker) => isOfStream && taker.code === code)
@@ -92,7 +92,7 @@ export class Takers {
     return takers.length > 0
   }
 
-  /** Notes for everybody that frames may be missing here. */
+  /** Notes for each receiver that frames may be missing here. */
   lost(loss: Loss): void {
     for (const taker of this.all) {
       const last = taker.waiting.at(-1)
@@ -112,9 +112,11 @@ function put(taker: Taker, arrived: StreamFrame | DataError): void {
 }
 
 /**
- * The frames of one stream from its creation on, each read as its type, for `for await`. While its queue of four frames is full,
- * the oldest makes way for the one that arrives. A `DataError` other than `closed` says that frames are missing here, and ends a
- * `for await`; `next` may be called again and goes on. It ends with its data connection, and with a `for await` that is left.
+ * The decoded frames of one stream from its creation on, for `for await`. When its queue of four frames is full, the
+ * newest frame replaces the oldest.
+ *
+ * A `DataError` other than `closed` means that frames are missing here. It ends a `for await`; a further call of `next`
+ * continues. The subscription ends with its data connection, or when a `for await` is left.
  */
 export class Subscription<Content> implements AsyncIterableIterator<StreamItem<Content>> {
   private readonly takers: Takers
@@ -134,7 +136,7 @@ export class Subscription<Content> implements AsyncIterableIterator<StreamItem<C
     this.read = read
   }
 
-  /** The next frame. Rejects with a `DataError`. */
+  /** Returns the next frame. Rejects with a `DataError`. */
   async next(): Promise<IteratorResult<StreamItem<Content>, undefined>> {
     for (;;) {
       const first = this.taker.waiting.shift()
@@ -145,25 +147,25 @@ export class Subscription<Content> implements AsyncIterableIterator<StreamItem<C
     }
   }
 
-  /** How many frames have made way for later ones since this was last asked. */
+  /** Returns the number of frames dropped for later ones since the last call. */
   missed(): number {
     const { missed } = this.taker
     this.taker.missed = 0
     return missed
   }
 
-  /** Takes no more. */
+  /** Ends receiving. */
   close(): void {
     this.takers.leave(this.taker)
   }
 
-  /** Takes no more. */
+  /** Ends receiving. */
   return(): Promise<IteratorResult<StreamItem<Content>, undefined>> {
     this.close()
     return Promise.resolve({ done: true, value: undefined })
   }
 
-  /** Itself. */
+  /** Returns itself. */
   [Symbol.asyncIterator](): this {
     return this
   }

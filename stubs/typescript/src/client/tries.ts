@@ -1,4 +1,4 @@
-// How connecting has gone of late.
+// History of connection attempts, and the wait before the next one.
 
 import { ConnectError } from './error.ts'
 import type { Backoff } from './config.ts'
@@ -6,37 +6,37 @@ import { TransportError } from '../platform.ts'
 import type { Platform, Transport } from '../platform.ts'
 import type { Loss } from '../loss.ts'
 
-/** No wait between two attempts to connect is longer, whatever is configured: a day, in milliseconds. */
+/** Upper limit of the wait between two attempts, for any configuration: a day, in milliseconds. */
 const LONGEST_WAIT = 24 * 60 * 60 * 1000
 
-/** Says how long to wait before each attempt. */
+/** Computes the wait before each attempt. */
 export class Tries {
   private readonly backoff: Backoff | null
-  /** Nothing has been attempted yet: there is nothing to wait for. */
+  /** `true` before the first attempt, which needs no wait. */
   private first = true
-  /** Attempts in a row that did not connect. */
+  /** Failed attempts in a row. */
   private failures = 0
-  /** Waits since the robot was last heard. */
+  /** Waits since the robot last sent a frame. */
   private waits = 0
 
-  /** `null`: the first attempt alone. */
+  /** Creates the history. `null` allows only the first attempt. */
   constructor(backoff: Backoff | null) {
     this.backoff = backoff
   }
 
-  /** An attempt has failed. */
+  /** Notes a failed attempt. */
   failed(): void {
     this.failures++
   }
 
-  /** An attempt has connected, and the connection has ended. A robot that only accepts and closes is waited for longer. */
+  /** Notes a connection that has ended. If the robot only accepts and closes, the waits grow as for failed attempts. */
   connected(heard: boolean): void {
     this.first = false
     this.failures = 0
     if (heard) this.waits = 0
   }
 
-  /** How long to wait before the next attempt; `null` to give up. */
+  /** Returns the time to wait before the next attempt, in milliseconds; `null` to give up. */
   next(): number | null {
     if (this.first) {
       this.first = false
@@ -50,19 +50,19 @@ export class Tries {
   }
 }
 
-/** Whom to connect to, and how. */
+/** Address to connect to, with options. */
 export interface Address {
   /** Name or address of the robot. */
   readonly host: string
   /** Port. */
   readonly port: number
-  /** How long one attempt may take. */
+  /** Time for one attempt, in milliseconds. */
   readonly timeout: number
-  /** After how much silence the robot is asked whether it is there. */
+  /** Silence before TCP probes the robot, in milliseconds; `null` for no probes. */
   readonly keepalive: number | null
 }
 
-/** One attempt to connect. Rejects with a `ConnectError`, or with `null` if it was ended. */
+/** Makes one attempt to connect. Rejects with a `ConnectError`, or with `null` if it was ended. */
 export async function attempt(platform: Platform, address: Address, ended: AbortSignal): Promise<Transport> {
   const { host, port, timeout, keepalive } = address
   const abort = new AbortController()
@@ -82,7 +82,7 @@ export async function attempt(platform: Platform, address: Address, ended: Abort
     if (abort.signal.aborted) stop()
     else abort.signal.addEventListener('abort', stop, { once: true })
   })
-  // The platform may not look at the signal: a connection that comes too late is closed.
+  // The platform may ignore the signal: a connection that comes too late is closed.
   const dialled = (async () => await platform.connect(host, port, { keepalive, signal: abort.signal }))()
   dialled.then(
     (transport) => {
@@ -101,18 +101,18 @@ export async function attempt(platform: Platform, address: Address, ended: Abort
   }
 }
 
-/** The platform's word for what went wrong. */
+/** Returns the platform's description of the error. */
 export const reasonOf = (problem: unknown): string =>
   problem instanceof TransportError ? problem.reason : String(problem)
 
-/** Why there is no connection, when it could not be made. */
+/** Returns the loss for an error of connecting. */
 export const lossOf = (error: ConnectError): Loss =>
   error.kind === 'timeout' ? { is: 'connect_timeout' } : { is: 'unreachable', reason: error.reason }
 
-/** What an error of the transport means on a connection over which the robot was heard, or not. */
+/** Returns the loss for an error of the transport. `heard`: the robot had sent a frame over the connection. */
 export function brokenBy(problem: unknown, heard: boolean): Loss {
   const reason = reasonOf(problem)
-  // A socket that is closed while a request lies unread in it is reset.
+  // A socket closed with unread data in it is reset.
   const isClosed = ['EPIPE', 'ECONNABORTED', 'ECONNRESET', 'CLOSED'].includes(reason)
   return isClosed && !heard ? { is: 'closed_unheard' } : { is: 'broken', reason }
 }

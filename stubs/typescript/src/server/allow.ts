@@ -1,8 +1,8 @@
-// From where apps may connect, and what they may call from there.
+// Addresses that apps may connect from, and the commands they may call.
 
 import type { Effect } from '../operation.ts'
 
-/** Apps of a network, and what they may call. */
+/** Apps of a network, and the commands they may call. */
 export interface Allowed {
   /** An address or a network, such as `10.0.0.0/24` or `fd00::/8`. */
   readonly network: string
@@ -16,7 +16,10 @@ interface Network {
   readonly effects: 'all' | readonly Effect[]
 }
 
-/** The four or sixteen bytes of an address; `null` for what is not one. An IPv4 address inside an IPv6 one is that address. */
+/**
+ * Returns the four or sixteen bytes of an address; `null` for any other text. An IPv4 address mapped into IPv6 gives
+ * four bytes.
+ */
 export function addressBytes(text: string): number[] | null {
   const mapped = /^::ffff:([0-9.]+)$/i.exec(text)
   const four = (mapped?.[1] ?? text).split('.')
@@ -54,16 +57,20 @@ function holds({ bytes, bits }: Network, address: readonly number[]): boolean {
   })
 }
 
-/** From where apps may connect. */
+/** Rules for the addresses of apps. */
 export class Access {
   private readonly networks: readonly Network[] | null
 
-  /** Absent: from anywhere, and everything. Throws a `TypeError` for what is not a network. */
+  /**
+   * Creates the rules. Without networks, every address may do everything. Throws a `TypeError` for an invalid network.
+   */
   constructor(allowed: readonly Allowed[] | undefined) {
     this.networks = allowed?.map(networkOf) ?? null
   }
 
-  /** What may be called from an address; `null` if nobody may connect from there. Of several networks the smallest counts. */
+  /**
+   * Returns the effects allowed from an address; `null` if it may not connect. The smallest matching network counts.
+   */
   effects(address: string): 'all' | readonly Effect[] | null {
     if (!this.networks) return 'all'
     const bytes = addressBytes(address)

@@ -1,10 +1,10 @@
-// What a handler is told of the call that it handles.
+// The context of a call that a handler receives.
 
 import type { Refusal } from '../refusal.ts'
 import type { FrameId } from '../session.ts'
 import type { ConnectionId, Context } from './types.ts'
 
-/** A call. Its signal is made when somebody asks for it: few handlers do, and to make one costs as much as to read a request. */
+/** A call. Its signal is created on first use: few handlers need it, and it costs as much as reading a request. */
 export class Called implements Context {
   /** Address of the app. */
   readonly peer: string
@@ -14,13 +14,13 @@ export class Called implements Context {
   readonly id: number
   /** Command code of the request. */
   readonly code: number
-  /** When the request was made, in milliseconds since 1970, if it says so. */
+  /** Time the request was made, in milliseconds since 1970; `null` if it carries no time. */
   readonly time: number | null
   private readonly refusal: () => Refusal
   private controller: AbortController | null = null
   private isAbandoned = false
 
-  /** A call over a connection. */
+  /** Creates the context of a call over a connection. */
   constructor(
     peer: string,
     connection: ConnectionId,
@@ -36,7 +36,7 @@ export class Called implements Context {
     this.refusal = refusal
   }
 
-  /** Aborted when nobody waits for the answer any more. */
+  /** Aborts when the response is no longer awaited. */
   get signal(): AbortSignal {
     if (this.controller === null) {
       this.controller = new AbortController()
@@ -45,12 +45,12 @@ export class Called implements Context {
     return this.controller.signal
   }
 
-  /** The refusal of a command that this robot does not carry out. */
+  /** Returns the refusal of a command that this robot does not implement. */
   notImplemented(): Refusal {
     return this.refusal()
   }
 
-  /** Nobody waits for its answer any more. */
+  /** Notes that the response is no longer awaited. */
   abandon(): void {
     this.isAbandoned = true
     this.controller?.abort()

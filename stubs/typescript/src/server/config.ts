@@ -1,4 +1,4 @@
-// What a robot can be told beforehand.
+// Configuration of a robot.
 
 import { gzipCheck, limitsCheck } from '../client/config.ts'
 import type { Gzip } from '../client/config.ts'
@@ -10,58 +10,63 @@ import type { Limits } from '../wire.ts'
 import type { Allowed } from './allow.ts'
 import type { Context } from './types.ts'
 
-/** What a robot can be told beforehand; times in milliseconds. Whatever is not set is the protocol's default. */
+/** Configuration of a robot; times in milliseconds. An unset value means the protocol's default. */
 export interface ServerConfig {
-  /** Address to listen at: all of the machine unless set. */
+  /** Address to listen on: all addresses unless set. */
   readonly address?: string
-  /** Port of commands and reports; 0 for any that is free. */
+  /** Port of commands and reports; 0 for any free port. */
   readonly commandPort?: number
-  /** Port of streams; 0 for any that is free. */
+  /** Port of streams; 0 for any free port. */
   readonly dataPort?: number
-  /** How long a handler may take before the app is answered with the result of a timeout. */
+  /** Time a handler may take before the app gets the result for a timeout. */
   readonly handlerTimeout?: number
   /** Oldest request that is still served, by the time in its envelope; `null` for any. */
   readonly maxAge?: number | null
-  /** Bounds of everything that grows with what apps send. */
+  /** Limits on everything that grows with the bytes from apps. */
   readonly limits?: Partial<Limits>
-  /** Most bytes of reports that wait for one app; as many as the longest body may have, unless set. */
+  /** Most bytes of reports waiting for one app; unless set, as many as the longest body. */
   readonly queuedBytes?: number
   /** Most connections from one address, at each port: 8 unless set. */
   readonly connectionsPerAddress?: number
   /**
-   * Networks that apps may connect from, at both ports, and the effects of the commands that they may call; nobody else, once it
-   * is set. A command with another effect is refused. An address is no proof of who sends.
+   * Networks that apps may connect from, at both ports, with the effects of the commands that they may call. Once set,
+   * all other addresses are refused, and so are commands with another effect. An address does not authenticate the
+   * sender.
    */
   readonly allow?: readonly Allowed[]
   /**
-   * How much memory apps may make the robot hold, those of both ports together, in bytes: what has come of frames, requests in the
-   * hands of handlers, answers, reports and streams that are not sent yet. 256 MiB unless set. Beyond it, the connection that holds
-   * most is closed.
+   * Most memory that the apps of both ports may occupy, in bytes: 256 MiB unless set. It counts received parts of
+   * frames, requests in handlers, and unsent responses, reports and streams. Beyond it, the connection that holds most
+   * is closed.
    */
   readonly memory?: number
-  /** Most handlers that may run on though nobody waits for their answer: 64 unless set. */
+  /** Most handlers that may still run after their response is no longer awaited: 64 unless set. */
   readonly abandonedHandlers?: number
   /** Message id of the first report on each connection; the time of day unless set. */
   readonly firstId?: number
-  /** Compresses responses and reports, for apps known to take it; `null`, the default, does not. */
+  /** Compresses responses and reports, for apps that support it; `null`, the default, does not. */
   readonly gzip?: Gzip | null
-  /** Whether to verify the digests of what is received: yes, unless set. */
+  /** Verifies the digests of received frames: `true` unless set. */
   readonly verifyDigest?: boolean
   /** Time for a frame header, from its first byte to its last: 5000 unless set. */
   readonly headerTimeout?: number
-  /** How long a connection may make no progress in the middle of a frame, or while it has something to read: 30 000. */
+  /**
+   * Time without progress inside a frame, or while an app has bytes to read, before a connection is closed: 30 000
+   * unless set.
+   */
   readonly stallTimeout?: number
-  /** What is slower, averaged over the stall timeout, is no progress; bytes per second: 1024 unless set. */
+  /** Least rate that counts as progress, averaged over the stall timeout, in bytes per second: 1024 unless set. */
   readonly leastRate?: number
-  /** How long a connection may be silent in between frames; `null`, the default, for any time. */
+  /** Time a connection may be silent between frames; `null`, the default, for any time. */
   readonly idleTimeout?: number | null
-  /** After how much silence TCP asks whether the app is still there, or `null` not to ask: 30 000 unless set. */
+  /** Silence before TCP probes the app: 30 000 unless set; `null` for no probes. */
   readonly keepalive?: number | null
-  /** Is told what happens. Unless set, errors are written to the console. */
+  /** Receives log messages. Unless set, errors are written to the console. */
   readonly log?: Log
   /**
-   * Is called with each error of a handler: what it threw besides a `Refusal`, also after its timeout, or why its response cannot
-   * be sent. The error may quote the request; the log has only its class and place. An error of this function is logged.
+   * Receives each error of a handler: an exception other than a `Refusal`, also after the timeout, or an invalid
+   * response. The error may quote the request; the log has only its class and place. An error in this function is
+   * logged.
    */
   readonly onHandlerError?: (error: unknown, context: Context) => void
 }

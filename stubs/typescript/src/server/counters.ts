@@ -1,46 +1,49 @@
-// What a robot has seen.
+// Counters of a robot.
 
-/** What a robot has seen since it was begun. */
+/** Counters of a robot since it was started. */
 export interface ServerCounters {
   /** Connections accepted at the command port. */
   connections: number
   /** Connections accepted at the data port. */
   dataConnections: number
-  /** Connections closed at once because there were as many as there may be already, in total or from their address. */
+  /** Connections closed at once at the limit, in total or from their address. */
   connectionsRefused: number
-  /** Connections closed at once because none may come from their address. */
+  /** Connections closed at once because their address is not allowed. */
   connectionsForbidden: number
   /** Connections closed because memory was short and they held most of it. */
   connectionsEvicted: number
-  /** Connections closed to make room for another, because nothing had come over them yet. */
+  /** Silent connections closed to make room for another. */
   connectionsDisplaced: number
-  /** Connections closed because a header did not come in time, a frame or a reader stalled, or nothing came for too long. */
+  /** Connections closed by a timeout: of a header, of a stalled frame or reader, or of silence. */
   connectionsTimedOut: number
-  /** Times that a connection was not read for a while because of useless work. */
+  /** Times a connection was not read for a while because of useless frames. */
   connectionsPaced: number
-  /** Requests answered with success. */
+  /** Requests with a response of success. */
   callsSucceeded: number
-  /** Requests answered with the result of a protocol error. */
+  /** Requests with the result for a protocol error. */
   callsProtocol: number
-  /** Requests answered with the result of a timeout. */
+  /** Requests with the result for a timeout. */
   callsTimedOut: number
-  /** Requests answered with the result of an invalid parameter. */
+  /** Requests with the result for an invalid parameter. */
   callsInvalid: number
-  /** Requests answered with the result of an expired message. */
+  /** Requests with the result for an expired message. */
   callsExpired: number
-  /** Requests that a handler answered with another result. */
+  /** Requests to which a handler gave another result. */
   callsRefused: number
-  /** Requests refused because they may not be made from their address; among `callsProtocol`. */
+  /** Requests refused because their address does not allow them; included in `callsProtocol`. */
   callsForbidden: number
-  /** Requests refused because the robot does not implement a command of the spec; among `callsProtocol`. */
+  /** Requests refused because the robot does not implement their command; included in `callsProtocol`. */
   callsNotImplemented: number
-  /** Handlers that threw something else than a `Refusal`. Their requests are among `callsProtocol`, or `callsTimedOut` before. */
+  /**
+   * Handlers that threw an error other than a `Refusal`. Their requests are included in `callsProtocol`, or earlier in
+   * `callsTimedOut`.
+   */
   handlersPanicked: number
-  /** Handlers that ran on though nobody waited for their answer any more. */
+  /** Handlers that were still running when their response was no longer awaited. */
   handlersAbandoned: number
-  /** Requests refused because as many of these as `abandonedHandlers` were at work; among `callsProtocol`. */
+  /** Requests refused because `abandonedHandlers` of these were running; included in `callsProtocol`. */
   abandonedReached: number
-  /** Times that a connection was not read because as many of its requests as may be were at work. */
+  /** Times a connection was not read because it had the most requests in flight. */
   inFlightReached: number
   /** Frames that could not be read. */
   badFrames: number
@@ -60,7 +63,7 @@ export interface ServerCounters {
   streamFramesIn: number
   /** Frames of streams sent. */
   streamFramesOut: number
-  /** Frames of streams dropped because nobody took them. */
+  /** Frames of streams dropped for lack of a receiver. */
   streamFramesDropped: number
   /** Bytes received. */
   bytesIn: number
@@ -68,7 +71,7 @@ export interface ServerCounters {
   bytesOut: number
 }
 
-/** Nothing seen. */
+/** Returns counters at zero. */
 export const newCounters = (): ServerCounters => ({
   connections: 0,
   dataConnections: 0,

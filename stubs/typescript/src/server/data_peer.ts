@@ -11,16 +11,16 @@ import { Pace, inflated } from './pace.ts'
 import type { Shared } from './shared.ts'
 import type { ConnectionId } from './types.ts'
 
-/** Frames waiting for one app, or for the robot, besides the one on its way. */
+/** Frames waiting for one app, or for the robot, without the one being sent. */
 const QUEUE = 4
 
-/** A frame of raw bytes that an app has sent. */
+/** A frame of raw bytes from an app. */
 export interface AppStream {
-  /** Data connection that brought it. */
+  /** Data connection it came over. */
   readonly connection: ConnectionId
   /** Address of the app. */
   readonly peer: string
-  /** Command code of what the bytes belong to. */
+  /** Code of the command that the bytes belong to. */
   readonly code: number
   /** Message id of the request that they belong to. */
   readonly id: number
@@ -34,7 +34,7 @@ export class AppStreams implements AsyncIterableIterator<AppStream> {
   private readonly changed = new Change()
   private isOver = false
 
-  /** Puts a frame behind the others as soon as there is room; `false` if nobody takes it any more. */
+  /** Queues a frame as soon as there is room. Returns `false` if there is no receiver any more. */
   async put(frame: AppStream): Promise<boolean> {
     while (this.waiting.length >= QUEUE && !this.isOver) await this.changed.wait()
     if (this.isOver) return false
@@ -43,7 +43,7 @@ export class AppStreams implements AsyncIterableIterator<AppStream> {
     return true
   }
 
-  /** The next frame. */
+  /** Returns the next frame. */
   async next(): Promise<IteratorResult<AppStream, undefined>> {
     for (;;) {
       const value = this.waiting.shift()
@@ -56,25 +56,28 @@ export class AppStreams implements AsyncIterableIterator<AppStream> {
     }
   }
 
-  /** Takes no more: frames are dropped from now on. */
+  /** Ends receiving: frames are dropped from now on. */
   close(): void {
     this.isOver = true
     this.changed.tell()
   }
 
-  /** Takes no more. */
+  /** Ends receiving. */
   return(): Promise<IteratorResult<AppStream, undefined>> {
     this.close()
     return Promise.resolve({ done: true, value: undefined })
   }
 
-  /** Itself. */
+  /** Returns itself. */
   [Symbol.asyncIterator](): this {
     return this
   }
 }
 
-/** Whose a data connection is. The protocol does not say; an address does, as long as there is one app behind it. */
+/**
+ * App that owns a data connection. The protocol does not identify it; the address does, as long as only one app uses
+ * it.
+ */
 export type Owner = ConnectionId | 'nobody' | 'several'
 
 /** One data connection. */
@@ -83,7 +86,7 @@ export class DataPeer {
   readonly id: ConnectionId
   /** Its address. */
   readonly address: string
-  /** Whose it is. */
+  /** App that owns it. */
   owner: Owner = 'nobody'
   /** A frame has been received. */
   isHeard = false
@@ -141,7 +144,7 @@ export class DataPeer {
     )
   }
 
-  /** Bytes that are held for it. */
+  /** Bytes held for the peer. */
   get held(): number {
     return this.inlet.pending + this.outlet.unsent
   }
@@ -176,7 +179,7 @@ export class DataPeer {
     await this.changed.until(clock, clock.now() + rest, () => this.isGone)
   }
 
-  /** Replies to a frame that cannot be used; nothing is lost if there is no room for that. */
+  /** Refuses a frame that cannot be used. The response is dropped if there is no room for it. */
   private refuse(id: FrameId): void {
     const { bodies, framing, protocol } = this.shared
     if (!bodies.hasResult || this.waiting >= QUEUE) return
@@ -188,7 +191,10 @@ export class DataPeer {
     if (!(made instanceof Promise)) this.outlet.push(made)
   }
 
-  /** Queues a frame as soon as there is room for it, for no longer than the stall timeout; `false` if that has not come. */
+  /**
+   * Queues a frame as soon as there is room, at most for the stall timeout. Returns `false` if there was no room in
+   * time.
+   */
   async send(bytes: Uint8Array): Promise<boolean> {
     const { clock } = this.shared.platform
     const { stall } = this.shared.settings.patience
@@ -206,7 +212,7 @@ export class DataPeer {
     return true
   }
 
-  /** Ends once what waits has been sent. */
+  /** Ends the connection after sending the queued frames. */
   end(why: string): void {
     if (this.isGone) return
     this.isGone = true
@@ -217,7 +223,7 @@ export class DataPeer {
     void goodbye(this.transport, this.outlet, this.shared.platform.clock, this.inlet.over).then(this.resolve)
   }
 
-  /** Ends it at once. */
+  /** Ends the connection at once. */
   cut(): void {
     this.end('cut off')
     this.outlet.stop()

@@ -1,4 +1,4 @@
-// The receiving half of an app's connection: reads frames, and sees to it that they come in time.
+// The receiving half of an app's connection: reads frames and enforces the timeouts.
 
 import { Alarm, Change } from '../alarm.ts'
 import { FrameStream } from '../frames.ts'
@@ -6,35 +6,35 @@ import type { Framing, WholeFrame } from '../framing.ts'
 import { Flow } from '../outlet.ts'
 import type { Clock, Transport } from '../platform.ts'
 
-/** How long what may take. */
+/** Timeouts of a connection. */
 export interface Patience {
-  /** For a header, from its first byte to its last. */
+  /** Time for a header, from its first byte to its last. */
   readonly header: number
-  /** Without progress in the middle of a frame. */
+  /** Time without progress inside a frame. */
   readonly stall: number
-  /** So many bytes in that time are progress. */
+  /** Bytes in that time that count as progress. */
   readonly least: number
-  /** Silent in between frames; `null` for any time. */
+  /** Silence allowed between frames; `null` for any time. */
   readonly idle: number | null
 }
 
-/** What an inlet is told, and asks. */
+/** Events and questions of an inlet. */
 export interface InletEvents {
-  /** A whole frame; the next one is read when this has been dealt with. */
+  /** Handles a whole frame. The next one is read when this is done. */
   frame(frame: WholeFrame): Promise<void> | void
-  /** So many bytes have come. */
+  /** Counts received bytes. */
   received(bytes: number): void
-  /** Nothing comes any more, for this reason; what has been carried out can still be answered, unless it broke. */
+  /** No more frames will come, for this reason. Responses can still be sent, unless the connection broke. */
   ended(why: string, isBroken: boolean): void
-  /** It did not come in time. */
+  /** A timeout has passed. */
   late(why: string): void
-  /** Whether nothing is going on that is not answered. */
+  /** Returns `true` if every request has its response. */
   isIdle(): boolean
 }
 
 /** Reads frames from an app. */
 export class Inlet {
-  /** Resolves when nothing is read any more. */
+  /** Resolves when reading has ended. */
   readonly over: Promise<void>
   private readonly transport: Transport
   private readonly clock: Clock
@@ -44,13 +44,13 @@ export class Inlet {
   private readonly alarm: Alarm
   private readonly flow: Flow
   private readonly resumed = new Change()
-  /** The first byte of a header that is not whole yet. */
+  /** Time of the first byte of an incomplete header. */
   private header: number | null = null
   private frameAt: number
   private reads = true
   private isDeaf = false
 
-  /** Begins to read. */
+  /** Starts reading. */
   constructor(transport: Transport, framing: Framing, clock: Clock, patience: Patience, events: InletEvents) {
     this.transport = transport
     this.clock = clock
@@ -95,7 +95,7 @@ export class Inlet {
     return this.stream.pending
   }
 
-  /** Nothing more is read, though more may come. What is being dealt with is. */
+  /** Stops reading. The frame being handled is still finished. */
   stop(why: string): void {
     if (this.isDeaf) return
     this.isDeaf = true
@@ -104,7 +104,7 @@ export class Inlet {
     this.events.ended(why, false)
   }
 
-  /** What the alarm looks at may have changed. */
+  /** Checks the due time again. Call this when it may have changed. */
   look(): void {
     this.alarm.look()
   }
@@ -119,7 +119,7 @@ export class Inlet {
           this.stop(inside ? 'closed inside a frame' : 'closed by the app')
           return
         }
-        // Read to the end, so that it is seen; and what comes is nobody's.
+        // Bytes are read to the end, to notice the end, and dropped.
         if (this.isDeaf) continue
         events.received(chunk.length)
         const now = this.clock.now()
@@ -157,7 +157,7 @@ export class Inlet {
       this.frameAt = this.clock.now()
       const dealt = this.events.frame(frame)
       if (!dealt) continue
-      // What could not come meanwhile is not missed.
+      // Time spent in the handler does not count as a stall.
       this.reads = false
       await dealt
       this.reads = true

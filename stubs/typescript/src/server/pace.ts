@@ -1,20 +1,23 @@
-// What a connection pays for when its frames make work and cannot be used: for a while nothing is read from it.
+// The penalty of a connection whose frames cost work and are useless: nothing is read from it for a while.
 
-/** How much a connection may have decompressed for it beyond what it has sent, in bytes per millisecond. */
+/** Rate of free decompression beyond the bytes received, in bytes per millisecond. */
 const INFLATED = (128 * 1024 * 1024) / 1000
 
-/** What a frame costs that cannot be used, in milliseconds. */
+/** Cost of a useless frame, in milliseconds. */
 const UNUSABLE = 1
 
-/** So many of these are free, and are so again once the time they cost has passed: an app of another version notices nothing. */
+/**
+ * Number of useless frames without a penalty. They are free again after the time they cost, so an app of another
+ * version does not notice.
+ */
 const FREE = 256
 
-/** What one connection has to pay for. */
+/** The penalty of one connection. */
 export class Pace {
   private owed = 0
   private at = 0
 
-  /** How long the connection rests after a frame that could not be used, in milliseconds. */
+  /** Returns the time the connection rests after a useless frame, in milliseconds. */
   unusable(now: number): number {
     this.owed = Math.max(0, this.owed - (now - this.at)) + UNUSABLE
     this.at = now
@@ -22,5 +25,5 @@ export class Pace {
   }
 }
 
-/** How long a connection rests after so many bytes more than it sent were decompressed for it, in milliseconds. */
+/** Returns the time a connection rests after decompressing `surplus` bytes more than it sent, in milliseconds. */
 export const inflated = (surplus: number): number => Math.floor(Math.max(0, surplus) / INFLATED)

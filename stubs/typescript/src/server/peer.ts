@@ -20,13 +20,13 @@ import type { RequestRead, Route } from './routes.ts'
 import type { Shared } from './shared.ts'
 import type { ConnectionId } from './types.ts'
 
-/** Beyond this much unsent, or being compressed, in bytes, nothing is read or taken up. */
+/** Most unsent bytes, or bytes being compressed, before reading and sending of reports pause. */
 const HIGH_WATER = 256 * 1024
 
-/** Who holds no more, in bytes, is not weighed when it gets more. */
+/** A peer that holds no more than this, in bytes, does not trigger a check of the memory limit. */
 const WEIGHTY = 64 * 1024
 
-/** A handler at work that is waited for. */
+/** A running handler whose response is awaited. */
 interface Work {
   /** Bytes of the request. */
   readonly weight: number
@@ -42,7 +42,7 @@ export class Peer {
   readonly id: ConnectionId
   /** Its address. */
   readonly address: string
-  /** Something has been received. */
+  /** At least one frame has been received. */
   isHeard = false
   /** Resolves when it has ended. */
   readonly over: Promise<void>
@@ -60,7 +60,7 @@ export class Peer {
   private readonly pace = new Pace()
   private readonly alarm: Alarm
   private readonly deadlines: Alarm
-  /** A handler has ended, or there is room again. */
+  /** Fires when a handler has ended or there is room again. */
   private readonly changed = new Change()
   private isDraining = false
   private isGone = false
@@ -128,14 +128,14 @@ export class Peer {
     })
   }
 
-  /** Bytes that are held for it. */
+  /** Bytes held for the peer. */
   get held(): number {
     let sum = this.inlet.pending + this.outlet.unsent + this.packing + this.queuedBytes
     for (const { weight } of this.works) sum += weight
     return sum
   }
 
-  /** Deals with one frame; later, if the connection has to rest first or the app does not take its answers. */
+  /** Handles one frame. Does so later if the connection must rest first, or the app does not read its responses. */
   private take(frame: WholeFrame): Promise<void> | void {
     const { shared } = this
     const { settings } = shared
@@ -150,7 +150,7 @@ export class Peer {
     return this.pause(rest)
   }
 
-  /** What has been dealt with may have been useless: how long to rest. */
+  /** Handles a frame. Returns the time to rest if it was useless, in milliseconds. */
   private deal(frame: WholeFrame): number {
     const { shared, pace } = this
     const { results } = shared.protocol.wire
@@ -207,7 +207,7 @@ export class Peer {
     }
   }
 
-  /** Handles a request. How long to rest if it was useless. */
+  /** Handles a request. Returns the time to rest if it was useless, in milliseconds. */
   private call(id: FrameId, data: Uint8Array): number {
     const { shared } = this
     const { results } = shared.protocol.wire
@@ -272,7 +272,7 @@ export class Peer {
     return 0
   }
 
-  /** A handler has ended. Whether anybody waits for its answer. */
+  /** Notes that a handler has ended. Returns `true` if its response is still awaited. */
   private release(work: Work): boolean {
     if (this.works.delete(work)) return true
     if (work.outlives) this.shared.abandoned.ended()
@@ -285,7 +285,7 @@ export class Peer {
     this.leaveIfDone()
   }
 
-  /** Those whose time is over: the app is told, and they run on. */
+  /** Ends the handlers whose time is over: the app gets the result for a timeout, and the handlers run on. */
   private expire(): void {
     const { now } = this.shared
     for (const work of this.works) {
@@ -305,7 +305,7 @@ export class Peer {
     work.context.abandon()
   }
 
-  /** A handler has refused, or failed. Returns how long to rest, as `refuse` does. */
+  /** Handles a refusal or an error of a handler. Returns the time to rest, as `refuse` does. */
   private fail(context: Called, id: FrameId, problem: unknown): number {
     const { success, protocol } = this.shared.protocol.wire.results
     if (problem instanceof Refusal && problem.code !== success.code) {
@@ -327,7 +327,7 @@ export class Peer {
     this.shared.handlerFailed('a handler threw', problem, context)
   }
 
-  /** A handler's response breaks the spec: the app is not sent it. */
+  /** Handles a response that breaks the spec: the app does not get it. */
   private invalid(context: Called, id: FrameId, problem: BodyError): void {
     const { kind: error, path, expected } = problem
     this.shared.handlerFailed("the handler's response breaks the spec", problem, context, { error, path, expected })
@@ -341,7 +341,7 @@ export class Peer {
       data = route.write(shared.bodies, shared.protocol.wire.results.success, response)
     } catch (problem) {
       if (problem instanceof BodyError) this.invalid(context, id, problem)
-      // A property of the response may throw.
+      // Reading a property of the response may throw.
       else this.fail(context, id, problem)
       return
     }
@@ -357,7 +357,10 @@ export class Peer {
     )
   }
 
-  /** Answers with a result alone; not at all where no response can carry one. How long to rest if the request was useless. */
+  /**
+   * Responds with a result alone, or not at all in a protocol without result codes. Returns the time to rest if the
+   * request was useless, in milliseconds.
+   */
   private refuse(id: FrameId, result: ResultText): number {
     const { shared } = this
     const { results } = shared.protocol.wire
@@ -383,7 +386,7 @@ export class Peer {
         counters.callsRefused++
         isUsable = true
     }
-    // Its text may quote the body: the code alone is logged.
+    // The text of a result may quote the body: only the code is logged.
     shared.log.tell('debug', 'refused', { code: id.code, id: id.id, result: result.code })
     if (data) {
       // The protocol's own result is the shortest response.
@@ -393,7 +396,7 @@ export class Peer {
     return isUsable ? 0 : this.pace.unusable(shared.now)
   }
 
-  /** Sends a frame. Calls back when it has been handed over, or when it is too long. */
+  /** Sends a frame. Calls `sent` when it has been handed over, or `tooLong`. */
   private post(id: FrameId, data: Uint8Array, sent: () => void, tooLong: () => void): void {
     if (this.isGone) return
     const { framing, settings, counters } = this.shared
@@ -424,7 +427,7 @@ export class Peer {
     })
   }
 
-  /** Queues a report. If the queue is full, the oldest reports in it give way. */
+  /** Queues a report, in place of the oldest ones if the queue is full. */
   push(report: Queued): void {
     const connection = this.id
     if (this.isGone || this.isDraining) {
@@ -451,7 +454,7 @@ export class Peer {
     this.send()
   }
 
-  /** Takes up reports, as many as there is room for. */
+  /** Sends queued reports, as many as there is room for. */
   private send(): void {
     const { shared } = this
     while (!this.isDraining && !this.isGone && this.outlet.unsent < HIGH_WATER) {
@@ -486,7 +489,7 @@ export class Peer {
     this.send()
   }
 
-  /** Lets the connection end once everything is answered. */
+  /** Ends the connection once every request has its response. */
   drain(why: string = 'drained'): void {
     if (this.isDraining || this.isGone) return
     this.isDraining = true
@@ -499,7 +502,7 @@ export class Peer {
     if (this.isDraining && this.works.size === 0 && this.packing === 0 && !this.isGone) this.end('drained')
   }
 
-  /** Nothing more will be answered. What has been is still sent. */
+  /** Ends responding. Responses made before are still sent. */
   end(why: string): void {
     if (this.isGone) return
     this.isGone = true
@@ -516,7 +519,7 @@ export class Peer {
     void goodbye(this.transport, this.outlet, this.shared.platform.clock, this.inlet.over).then(this.resolve)
   }
 
-  /** Ends it at once. */
+  /** Closes the connection at once. */
   cut(): void {
     this.end('cut off')
     this.outlet.stop()

@@ -7,15 +7,18 @@ import type { Acknowledgement, ConnectionId } from './types.ts'
 export interface Queued {
   /** Command code. */
   readonly code: number
-  /** How its acknowledgement is awaited. */
+  /** Policy for its acknowledgement. */
   readonly policy: AckPolicy
   /** Its body. */
   readonly data: Uint8Array
-  /** Is told how it ended. */
+  /** Receives the outcome. */
   ended(acknowledgement: Acknowledgement): void
 }
 
-/** Repetitions to different apps are spread over an eighth of the wait, so that they do not come at once. */
+/**
+ * Returns the wait before a repetition. The waits of different apps are spread over an eighth, so that repetitions do
+ * not come at once.
+ */
 export function spread(timeout: number, connection: ConnectionId): number {
   const PLACES = 32
   return (timeout / 8 / PLACES) * (connection % PLACES)

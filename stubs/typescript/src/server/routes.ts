@@ -1,4 +1,4 @@
-// Which method of a robot handles a request.
+// Maps requests to the methods of a robot.
 
 import { keys, keysOf, textOf } from '../bodies.ts'
 import type { Bodies } from '../bodies.ts'
@@ -7,23 +7,23 @@ import type { Struct } from '../schema.ts'
 import type { CodeRangeOf, ServiceOf } from '../wire.ts'
 import type { Context } from './types.ts'
 
-/** A request, read. */
+/** A decoded request. */
 export interface RequestRead {
-  /** What is asked. */
+  /** The request. */
   readonly request: unknown
-  /** When it was made, if it says so. */
+  /** Time the request was made; `null` if it carries no time. */
   readonly time: number | null
 }
 
-/** How requests of a code are handled. */
+/** Handling of requests with one code. */
 export interface Route {
-  /** What it does to the robot. */
+  /** Effect on the robot. */
   readonly effect: Effect
-  /** What has been begun must not be cut off: it moves something, or nobody knows what it does. */
+  /** `true` if a running handler must not be cut off: its effect is motion or unknown. */
   readonly outlives: boolean
   /** Reads a request; throws a `BodyError`. */
   read(bodies: Bodies, code: number, data: Uint8Array): RequestRead
-  /** Handles it; throws what refuses it. */
+  /** Handles it. Throws a `Refusal` to refuse it. */
   handle(request: unknown, context: Context): unknown
   /** Writes the response; throws a `BodyError`. */
   write(bodies: Bodies, success: ResultText, response: unknown): Uint8Array
@@ -40,7 +40,7 @@ export class Routes {
   private readonly ranges: readonly (CodeRangeOf & { readonly route: Route })[]
   private readonly other: Route | null
 
-  /** Those of a robot, which may lack some. */
+  /** Creates the routes of a robot, which may lack some methods. */
   constructor({ methods, ranges, unknown }: ServiceOf, robot: object) {
     const methodOf = (name: string): Method | undefined => {
       const method = (robot as Readonly<Record<string, unknown>>)[name]
@@ -59,14 +59,14 @@ export class Routes {
     this.other = other ? raw(robot, other) : null
   }
 
-  /** How a code is handled; `null` for an unknown one. */
+  /** Returns the route of a code; `null` for an unknown code. */
   of(code: number): Route | null {
     return (
       this.routes.get(code) ?? this.ranges.find(({ first, last }) => first <= code && code <= last)?.route ?? this.other
     )
   }
 
-  /** The spec's name of a code. */
+  /** Returns the spec's name of a code. */
   nameOf(code: number): string {
     return this.names.get(code) ?? 'unknown'
   }
@@ -88,7 +88,7 @@ function typed(command: AnyCommand, robot: object, method: Method | undefined): 
   }
 }
 
-/** JSON in, JSON out. */
+/** Returns a route without types: JSON in, JSON out. */
 function raw(robot: object, method: Method): Route {
   return {
     effect: 'unknown',

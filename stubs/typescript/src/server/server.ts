@@ -1,4 +1,4 @@
-// The robot's side: what a generated robot stands on.
+// The robot's side: the base of a generated robot.
 
 // Projects with an older `lib` have no `Symbol.asyncDispose`.
 /// <reference lib="esnext.disposable" preserve="true" />
@@ -18,7 +18,7 @@ import { Shared } from './shared.ts'
 import { PushError } from './types.ts'
 import type { Acknowledgement, Audience, ConnectionId } from './types.ts'
 
-/** An app that is connected. */
+/** A connected app. */
 export interface AppConnection {
   /** Its connection. */
   readonly connection: ConnectionId
@@ -56,35 +56,35 @@ export class Server {
     return this.listeners[1]?.port ?? 0
   }
 
-  /** The apps connected at this moment. */
+  /** Returns the apps connected at present. */
   connections(): AppConnection[] {
     return [...this.shared.peers.values()].map(({ id, address }) => ({ connection: id, peer: address }))
   }
 
-  /** How much memory is held for apps at this moment, in bytes. */
+  /** Returns the memory held for apps at present, in bytes. */
   memory(): number {
     return this.shared.held
   }
 
-  /** What the robot has seen so far. */
+  /** Returns a copy of the robot's counters. */
   counters(): Readonly<ServerCounters> {
     return { ...this.shared.counters }
   }
 
-  /** Serves a connection that was accepted elsewhere. `null` if there are too many. */
+  /** Serves a connection that the caller accepted. Returns `null` if there are too many. */
   serve(transport: Transport): ConnectionId | null {
     return this.shared.serve(transport)
   }
 
-  /** Serves a data connection that was accepted elsewhere. `null` if there are too many. */
+  /** Serves a data connection that the caller accepted. Returns `null` if there are too many. */
   serveData(transport: Transport): ConnectionId | null {
     return this.shared.serveData(transport)
   }
 
   /**
-   * Sends a report to one app or to all that are connected, and waits for what becomes of it. Each app has a queue; when it is
-   * full, the oldest report in it gives way. A report that is not acknowledged in time is sent again with the same id, as often as
-   * its policy says. Rejects with a `PushError` if it was not even queued.
+   * Sends a report to one app or to all connected ones, and returns the outcome at each. Each app has a queue. When it
+   * is full, the newest report replaces the oldest. A report without an acknowledgement in time is sent again with the
+   * same id, as its policy specifies. Rejects with a `PushError` if the report was not queued.
    */
   async push<Body>(audience: Audience, report: Report<Body>, body: Body): Promise<Acknowledgement[]> {
     const { code } = report
@@ -107,12 +107,14 @@ export class Server {
     return await Promise.all(ends)
   }
 
-  /** Sends a report whose type is not known, such as one of a list of all. What it says, its schema asks. */
+  /** Sends a report whose type is not known, such as one from a list. Its schema checks the body. */
   pushAny(audience: Audience, report: AnyReportOf, body: unknown): Promise<Acknowledgement[]> {
     return this.push(audience, report as Report<unknown>, body)
   }
 
-  /** Sends a frame of a stream; all else is as with `sendBytes`. Rejects with a `PushError`, also if it breaks a constraint. */
+  /**
+   * Sends a frame of a stream as `sendBytes` does. Rejects with a `PushError`, also if the content breaks a constraint.
+   */
   async sendStream<Content>(
     audience: Audience,
     stream: Stream<Content>,
@@ -130,10 +132,12 @@ export class Server {
   }
 
   /**
-   * Sends a frame of raw bytes to the data connections of one app or of all: `code` says what they belong to, `id` which request
-   * they answer. The protocol has nothing that ties a data connection to an app but the address: if several apps have come from
-   * there, nothing is sent, and the error is `ambiguous`. Each data connection has a short queue, and this waits for room in all of
-   * them, but in none longer than the stall timeout. Gives the number of connections that took the frame.
+   * Sends a frame of raw bytes to the data connections of one app or of all. `code` is the command that they belong to,
+   * `id` the request that they answer. Returns the number of connections that took the frame.
+   *
+   * Only the address ties a data connection to an app. If several apps share it, nothing is sent and the error is
+   * `ambiguous`. Each data connection has a short queue. The call waits for room in each, at most for the stall
+   * timeout.
    */
   async sendBytes(audience: Audience, code: number, id: number, data: Uint8Array): Promise<number> {
     const { shared } = this
@@ -149,8 +153,8 @@ export class Server {
   }
 
   /**
-   * The frames of raw bytes that apps send from now on. While nobody takes them, they are dropped and counted; while the receiver
-   * is busy, apps are not read. A later call takes over.
+   * Returns the frames of raw bytes that apps send from now on. Without a receiver, frames are dropped and counted.
+   * While the receiver is busy, nothing is read from apps. A later call takes over.
    */
   streams(): AppStreams {
     this.shared.inbox?.close()
@@ -159,14 +163,14 @@ export class Server {
     return streams
   }
 
-  /** Resolves when the robot has ended. */
+  /** Waits until the robot has ended. */
   ended(): Promise<void> {
     return this.isOver
   }
 
   /**
-   * Ends the robot: accepts nothing more, reads no more requests, answers those that are being handled, waits for handlers that run
-   * on, and cuts off after `grace` milliseconds what is not done by then. Resolves when all is over, never later than that.
+   * Ends the robot. Accepts no more connections and reads no more requests. Requests in handlers still get their
+   * responses. After `grace` milliseconds, cuts off the rest. Resolves when all has ended, at the latest then.
    */
   async shutdown(grace: number): Promise<void> {
     duration('grace', grace)
@@ -198,7 +202,7 @@ export class Server {
   }
 }
 
-/** Makes a robot that listens nowhere: connections are handed to it. */
+/** Creates a robot that listens on no port: the caller hands it connections. */
 export function robotWithoutPorts(
   protocol: ProtocolOf,
   service: ServiceOf,
@@ -209,7 +213,7 @@ export function robotWithoutPorts(
   return new Server(new Shared(protocol, platform, new Routes(service, robot), config), [])
 }
 
-/** Serves apps with the methods of a robot. Rejects if a port cannot be had. */
+/** Serves apps with the methods of a robot. Rejects if a port is not available. */
 export async function serveRobot(
   protocol: ProtocolOf,
   service: ServiceOf,

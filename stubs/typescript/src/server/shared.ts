@@ -1,4 +1,4 @@
-// What all connections of a robot share: settings, counters, and who is there.
+// State shared by all connections of a robot: settings, counters and the connected apps.
 
 import { Bodies, because, firstIdAt } from '../bodies.ts'
 import { withDefaults } from '../defaults.ts'
@@ -23,54 +23,54 @@ import type { Routes } from './routes.ts'
 import { PushError } from './types.ts'
 import type { Audience, ConnectionId, Context } from './types.ts'
 
-/** Settings with nothing left open. */
+/** Settings with all defaults filled in. */
 export interface ServerSettings {
-  /** Bounds. */
+  /** Limits. */
   readonly limits: Limits
-  /** How long a handler may take. */
+  /** Time a handler may take, in milliseconds. */
   readonly handlerTimeout: number
-  /** Oldest request that is served. */
+  /** Oldest request that is served, in milliseconds. */
   readonly maxAge: number | null
   /** Most bytes of reports that wait for one app. */
   readonly queuedBytes: number
-  /** Most bytes that apps may make the robot hold. */
+  /** Most bytes held for apps. */
   readonly memory: number
   /** Most connections from one address, at each port. */
   readonly perAddress: number
-  /** From which length on data is compressed. */
+  /** Least length of data to compress, in bytes; `null` for no compression. */
   readonly gzipFrom: number | null
-  /** How long what may take. */
+  /** Timeouts of a connection. */
   readonly patience: Patience
 }
 
-/** Handlers that run on though nobody waits for their answer any more. */
+/** Handlers still running after their response is no longer awaited. */
 export class Abandoned {
   private readonly limit: number
   private readonly changed = new Change()
   private running = 0
 
-  /** So many may. */
+  /** Creates the counter. At most `limit` handlers may run. */
   constructor(limit: number) {
     this.limit = limit
   }
 
-  /** Whether as many run on as may: no handler that might join them is begun then. */
+  /** `true` at the limit: then no handler starts that might be abandoned and run on. */
   get isFull(): boolean {
     return this.limit > 0 && this.running >= this.limit
   }
 
-  /** One more. */
+  /** Counts one more. */
   begun(): void {
     this.running++
   }
 
-  /** One has ended. */
+  /** Notes that one has ended. */
   ended(): void {
     this.running--
     this.changed.tell()
   }
 
-  /** Resolves once there is none. */
+  /** Waits until there is none. */
   async none(): Promise<void> {
     while (this.running > 0) await this.changed.wait()
   }
@@ -80,7 +80,7 @@ function settle({ defaults }: ProtocolOf['wire'], config: ServerConfig): ServerS
   serverCheck('ServerConfig', config)
   const memory = config.memory ?? 256 << 20
   const given = withDefaults(config.limits ?? {}, defaults.limits)
-  // A frame that could not be dealt with even if it were alone is refused: it may take up to four times its text beside itself.
+  // Frames too large for the memory limit are refused. Besides itself, a frame may take up to four times its text.
   const limits = { ...given, frameBytes: Math.min(given.frameBytes, Math.floor((memory / 16) * 3)) }
   const stall = config.stallTimeout ?? 30_000
   const { gzip = null } = config
@@ -105,9 +105,9 @@ function settle({ defaults }: ProtocolOf['wire'], config: ServerConfig): ServerS
 export class Shared {
   /** The protocol. */
   readonly protocol: ProtocolOf
-  /** What it runs on. */
+  /** The platform. */
   readonly platform: ServerPlatform
-  /** What it was told. */
+  /** The settings. */
   readonly settings: ServerSettings
   /** Frames. */
   readonly framing: Framing
@@ -115,26 +115,26 @@ export class Shared {
   readonly bodies: Bodies
   /** Its methods. */
   readonly routes: Routes
-  /** What has been seen. */
+  /** Counters of the robot. */
   readonly counters: ServerCounters = newCounters()
-  /** Handlers that run on. */
+  /** Abandoned handlers. */
   readonly abandoned: Abandoned
-  /** From where apps may connect. */
+  /** Rules for addresses. */
   readonly access: Access
   /** Apps, by their numbers. */
   readonly peers: Map<ConnectionId, Peer> = new Map()
   /** Data connections, by their numbers. */
   readonly dataPeers: Map<ConnectionId, DataPeer> = new Map()
-  /** Where frames of apps go. */
+  /** Receiver of the frames that apps send. */
   inbox: AppStreams | null = null
-  /** Lines for people. */
+  /** The log. */
   readonly log: Logger
   private readonly config: ServerConfig
   private readonly ending = new Set<Promise<void>>()
   private next = 1
   private isStopping = false
 
-  /** Those of a robot. */
+  /** Creates the state of a robot. */
   constructor(protocol: ProtocolOf, platform: ServerPlatform, routes: Routes, config: ServerConfig) {
     this.protocol = protocol
     this.platform = platform
@@ -153,7 +153,7 @@ export class Shared {
     this.abandoned = new Abandoned(config.abandonedHandlers ?? 64)
   }
 
-  /** Milliseconds that never go back. */
+  /** Monotonic time, in milliseconds. */
   get now(): number {
     return this.platform.clock.now()
   }
@@ -175,14 +175,14 @@ export class Shared {
     )
   }
 
-  /** The refusal of a command that this robot does not carry out. */
+  /** Returns the refusal of a command that this robot does not implement. */
   notImplemented(code: number, connection: ConnectionId): Refusal {
     this.counters.callsNotImplemented++
     this.log.tellThinly('warn', 'not implemented', { connection, name: this.routes.nameOf(code), code })
     return because(this.protocol.wire.results.protocol, 'not implemented')
   }
 
-  /** Serves one more command connection; `null` if there are too many, and it has been closed. */
+  /** Serves a new command connection. Closes it and returns `null` if there are too many. */
   serve(transport: Transport): ConnectionId | null {
     const displaced = this.admit(this.peers, transport, ({ isHeard }) => !isHeard)
     if (displaced === undefined) return null
@@ -197,9 +197,9 @@ export class Shared {
     return id
   }
 
-  /** Serves one more data connection; `null` if there are too many, and it has been closed. */
+  /** Serves a new data connection. Closes it and returns `null` if there are too many. */
   serveData(transport: Transport): ConnectionId | null {
-    // Whoever only receives is known by his commands.
+    // A data connection that only receives counts as active if its address also sends commands.
     const speakers = (): ReadonlySet<string> =>
       new Set([...this.peers.values()].filter(({ isHeard }) => isHeard).map(({ address }) => address))
     const displaced = this.admit(
@@ -219,7 +219,10 @@ export class Shared {
     return id
   }
 
-  /** Who has to give way to a new connection: nobody (`null`), or one over which nothing has come; `undefined` if it is refused. */
+  /**
+   * Returns the silent connection that a new one replaces; `null` if there is room, `undefined` if the new one is
+   * refused.
+   */
   private admit<T extends { readonly address: string }>(
     table: ReadonlyMap<ConnectionId, T>,
     transport: Transport,
@@ -249,7 +252,7 @@ export class Shared {
     return undefined
   }
 
-  /** How much is held for apps at this moment, in bytes. */
+  /** Memory held for apps at present, in bytes. */
   get held(): number {
     let sum = 0
     for (const peer of this.peers.values()) sum += peer.held
@@ -257,7 +260,7 @@ export class Shared {
     return sum
   }
 
-  /** Something more is held: the connection that holds most goes, if it is too much. */
+  /** Checks the memory limit. Beyond it, closes the connection that holds most. */
   weigh(): void {
     if (this.held <= this.settings.memory) return
     const all = [...this.peers.values(), ...this.dataPeers.values()]
@@ -272,17 +275,17 @@ export class Shared {
     void over.then(() => this.ending.delete(over))
   }
 
-  /** An app has left. */
+  /** Removes an app that has left. */
   left(id: ConnectionId): void {
     this.peers.delete(id)
   }
 
-  /** A data connection has ended. */
+  /** Removes a data connection that has ended. */
   leftData(id: ConnectionId): void {
     this.dataPeers.delete(id)
   }
 
-  /** Whom a report goes to. */
+  /** Returns the receivers of a report. */
   audience(audience: Audience): Peer[] {
     if (audience === 'all') return [...this.peers.values()]
     const peer = this.peers.get(audience)
@@ -290,7 +293,7 @@ export class Shared {
     return [peer]
   }
 
-  /** Whom a stream goes to. */
+  /** Returns the receivers of a stream. */
   dataAudience(audience: Audience): DataPeer[] {
     const all = [...this.dataPeers.values()]
     if (audience === 'all') return all
@@ -303,7 +306,7 @@ export class Shared {
     throw new PushError(isAnybodys ? 'ambiguous' : 'no_connection')
   }
 
-  /** Takes no more connections and requests, and lets those there are end by themselves. Resolves when they have. */
+  /** Takes no more connections and requests, and lets the present ones finish. Resolves when all have ended. */
   async stop(): Promise<void> {
     this.isStopping = true
     for (const peer of this.peers.values()) peer.drain()

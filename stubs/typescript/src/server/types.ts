@@ -1,4 +1,4 @@
-// What handlers and reports are told of.
+// Types that handlers and senders of reports receive.
 
 import type { BodyError } from '../fault.ts'
 import type { Soon } from '../platform.ts'
@@ -7,7 +7,7 @@ import type { Refusal } from '../refusal.ts'
 /** A connection of an app, by its number. */
 export type ConnectionId = number
 
-/** What a handler is told beside the request. */
+/** Facts about a call that a handler receives with the request. */
 export interface Context {
   /** Address of the app. */
   readonly peer: string
@@ -17,67 +17,70 @@ export interface Context {
   readonly id: number
   /** Command code of the request. */
   readonly code: number
-  /** When the request was made, in milliseconds since 1970, if it says so. */
+  /** Time the request was made, in milliseconds since 1970; `null` if it carries no time. */
   readonly time: number | null
   /**
-   * Aborted when nobody waits for the answer any more: the connection has ended, or the handler timeout is over and the app has
-   * been told so. A handler runs on then; this is how it learns of that and stops, if it should.
+   * Aborts when the response is no longer awaited: the connection has ended, or the app got a timeout after the handler
+   * timeout. The handler keeps running and can use this signal to stop.
    */
   readonly signal: AbortSignal
-  /** The refusal of a command that the spec has and this robot does not carry out, to be thrown: nothing has been done. */
+  /**
+   * Returns the refusal of a command that this robot does not implement. The handler throws it before it has any
+   * effect.
+   */
   notImplemented(): Refusal
 }
 
-/** What a handler gives: the response, at once or later. It refuses by throwing a `Refusal`. */
+/** The result of a handler: the response, at once or later. A handler refuses by throwing a `Refusal`. */
 export type Answer<Response> = Soon<Response>
 
 /** A request of a code without a type. */
 export interface RawRequest {
   /** Command code. */
   readonly code: number
-  /** The own keys as JSON. */
+  /** The request's keys, without the envelope, as JSON. */
   readonly json: string
 }
 
-/** Whom to send to: every app connected at this moment, or one by its command connection. */
+/** Receivers of a report: every app connected at present, or one by its command connection. */
 export type Audience = 'all' | ConnectionId
 
-/** How a report ended at one app. */
+/** Outcome of a report at one app. */
 export type AckOutcome =
   /** The app has acknowledged it. */
   | 'acknowledged'
-  /** The app has answered with another result than success. */
+  /** The app acknowledged it with a result other than success. */
   | 'refused'
-  /** The app has answered with something that is not an acknowledgement. */
+  /** The app sent something that is not an acknowledgement. */
   | 'invalid'
-  /** No acknowledgement has come, and the report was repeated as often as it may be. */
+  /** No acknowledgement came, and the repetitions are used up. */
   | 'timed_out'
-  /** The app was so slow that the report gave way to newer ones before it was sent. */
+  /** The app was so slow that newer reports replaced it before it was sent. */
   | 'dropped'
   /** The connection ended first. */
   | 'closed'
 
-/** What has become of a report at one app. */
+/** Outcome of a report at one app. */
 export interface Acknowledgement {
   /** The app. */
   readonly connection: ConnectionId
-  /** How it ended. */
+  /** The outcome. */
   readonly outcome: AckOutcome
-  /** Of `refused`: what the app has answered. */
+  /** For `refused`: the app's result. */
   readonly refusal?: Refusal
-  /** Of `invalid`: what is wrong with it. */
+  /** For `invalid`: the error in the body. */
   readonly body?: BodyError
 }
 
-/** Why a report was not even queued. */
+/** Reasons why a report was not queued. */
 export type PushErrorKind =
-  /** What is to be sent breaks one of its own constraints. */
+  /** The report or stream content breaks a constraint. */
   | 'invalid_report'
   /** It does not fit into a frame. */
   | 'frame'
-  /** There is no such connection any more; for a stream: no data connection of that app. */
+  /** The connection does not exist any more. For a stream: that app has no data connection. */
   | 'no_connection'
-  /** A stream: several apps share the address, and nothing tells whose data connection is whose. Nothing was sent. */
+  /** For a stream: nothing was sent. Several apps share the address, so the app's data connection is unknown. */
   | 'ambiguous'
 
 const SAYS: Readonly<Record<PushErrorKind, string>> = {
@@ -87,14 +90,14 @@ const SAYS: Readonly<Record<PushErrorKind, string>> = {
   ambiguous: 'several apps share the address, and nothing tells whose data connection is whose',
 }
 
-/** Why a report or a frame of a stream was not sent. */
+/** The error of sending a report or a frame of a stream. */
 export class PushError extends Error {
   /** The fixed name. */
   readonly kind: PushErrorKind
-  /** Of `invalid_report`: what is wrong. */
+  /** For `invalid_report`: the error in the body. */
   readonly body: BodyError | null
 
-  /** An error of this kind. */
+  /** Creates an error of this kind. */
   constructor(kind: PushErrorKind, body: BodyError | null = null) {
     super(body ? `${SAYS[kind]}: ${body.message}` : SAYS[kind])
     this.name = 'PushError'

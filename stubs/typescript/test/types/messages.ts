@@ -1,4 +1,4 @@
-// Messages as a package has them: plain types, and for each a constant that the compiler holds to it.
+// Messages as in a package: plain types, each with a constant that the compiler checks against it.
 
 import { bytesOf, readMessage, writeMessage } from 'fc-protocol/runtime'
 import type { Choice, Enum, Extra, Struct } from 'fc-protocol/runtime'
@@ -63,7 +63,7 @@ const read: Go = readMessage(GoStruct, bytesOf(text), { depth: 8, values: 100 })
 const again = writeMessage(GoStruct, read)
 if (text !== again || typeof read.serial !== 'number') throw new Error(`${text} became ${again}`)
 
-// What does not fit its type is found by the compiler.
+// The compiler finds each mismatch with a type.
 // @ts-expect-error a field is missing
 export const lacksField: Struct<Id> = { is: 'struct', name: 'Id', fields: {} }
 // @ts-expect-error a field too many

@@ -1,4 +1,4 @@
-// What is emitted as client.ts: the app's side.
+// The form of the generated client.ts: the app's side.
 
 import { Connection, addAppStreams, addCalls, dial, dialLater } from 'fc-protocol/runtime'
 import type { ClientConfig, DataConnection, Platform, UnknownReport } from 'fc-protocol/runtime'
@@ -17,7 +17,7 @@ export class Client extends Connection<AnyReport> {
     addCalls(Client, service.methods)
   }
 
-  /** Connects to a robot; what `config` does not set has the default of the spec. */
+  /** Connects to a robot. Settings absent from `config` have the spec's defaults. */
   static async connect(platform: Platform, config: ClientConfig = {}): Promise<Client> {
     return new Client(await dial(toy, platform, config))
   }
@@ -40,7 +40,7 @@ export class Streams {
   /** The data connection. */
   protected readonly data: DataConnection
 
-  /** Those of a data connection. */
+  /** Creates the streams of a data connection. */
   constructor(data: DataConnection) {
     this.data = data
   }

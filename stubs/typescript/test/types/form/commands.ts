@@ -1,4 +1,4 @@
-// What is emitted as groups/GROUP/commands.ts.
+// The form of the generated groups/GROUP/commands.ts.
 
 import type { AnyCommand, Command, FollowedCommand } from 'fc-protocol/runtime'
 import type * as messages from './messages.ts'

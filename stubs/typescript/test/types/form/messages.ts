@@ -1,4 +1,4 @@
-// What is emitted as groups/GROUP/messages.ts: plain types, the values of enums, and the methods of both sides.
+// The form of the generated groups/GROUP/messages.ts: plain types, the values of enums, and the methods of both sides.
 
 import type {
   Acknowledgement,
@@ -17,7 +17,7 @@ export type DriveState = 0 | 1 | 2 | 3 | (number & {})
 
 /** Its values. */
 export const DriveState = {
-  /** It stands. */
+  /** Idle. */
   Idle: 0,
   /** It drives. */
   Driving: 1,
@@ -57,17 +57,17 @@ export interface StartDriveResponse {
   extra?: Extra
 }
 
-/** How far it has come. */
+/** Progress of a drive. */
 export interface DriveProgress {
   /** Number of the drive. */
   drive: number
-  /** How far. */
+  /** Progress. */
   state?: DriveState | undefined
   /** Other keys, kept unchanged. */
   extra?: Extra
 }
 
-/** How far it has come: acknowledgement. */
+/** Progress of a drive: acknowledgement. */
 export interface DriveProgressAck {
   /** Other keys, kept unchanged. */
   extra?: Extra
@@ -122,6 +122,6 @@ export interface DriveExamples {
 
 /** The reports of the group as a robot pushes them: methods of `Reporter`. */
 export interface DriveReporter {
-  /** How far a drive has come. Resolves to what became of it at each app. */
+  /** Progress of a drive. Resolves to the outcome at each app. */
   driveProgress(report: DriveProgress, audience?: Audience): Promise<Acknowledgement[]>
 }

@@ -1,4 +1,4 @@
-// What is emitted as operations.ts: the protocol with all of its operations, group by group.
+// The form of the generated operations.ts: the protocol with all of its operations, group by group.
 
 import type { AnyCommand, AnyReportOf, AnyStream, ProtocolOf, ServiceOf } from 'fc-protocol/runtime'
 import driveCommands from './commands.ts'
@@ -16,7 +16,7 @@ export const reports: Readonly<Record<string, AnyReportOf>> = {
   ...driveReports,
 }
 
-/** All streams, by what methods call them. */
+/** All streams, by the names in their methods. */
 export const streams: Readonly<Record<string, AnyStream>> = {
   ...driveStreams,
 }
@@ -29,7 +29,7 @@ export const toy: ProtocolOf = {
   streams: Object.values(streams),
 }
 
-/** Which command each method of a robot handles. */
+/** The command that each method of a robot handles. */
 export const service: ServiceOf = {
   methods: commands,
   ranges: [{ first: 500, last: 599, method: 'passThrough' }],

@@ -1,10 +1,10 @@
-// What is emitted as groups/GROUP/reports.ts.
+// The form of the generated groups/GROUP/reports.ts.
 
 import type { AnyReportOf, Report } from 'fc-protocol/runtime'
 import type * as messages from './messages.ts'
 import * as schemas from './schemas.ts'
 
-/** How far a drive has come. */
+/** Progress of a drive. */
 export const driveProgress: Report<messages.DriveProgress, 'DriveProgress'> = {
   is: 'report',
   name: 'drive_progress',

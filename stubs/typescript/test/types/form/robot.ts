@@ -1,4 +1,4 @@
-// What is emitted as robot.ts: the robot's side.
+// The form of the generated robot.ts: the robot's side.
 
 import { Refusal, addExamples, addReports, serveRobot } from 'fc-protocol/runtime'
 import type { Answer, Context, RawRequest, Server, ServerConfig, ServerPlatform } from 'fc-protocol/runtime'
@@ -6,16 +6,16 @@ import * as commands from './commands.ts'
 import type * as messages from './messages.ts'
 import { reports, service, toy } from './protocol_of.ts'
 
-/** A complete robot: one method per command. What it cannot do, it refuses by throwing a `Refusal`. */
+/** A complete robot: one method per command. It refuses by throwing a `Refusal`. */
 export interface Robot extends messages.DriveRobot {
-  /** Codes 500 to 599 that have no method of their own: JSON in and out. Refused as unknown without it. */
+  /** Codes 500 to 599 without a separate method: JSON in and out. Refused as unknown if absent. */
   passThrough?(request: RawRequest, context: Context): Answer<string>
 
-  /** All other codes. Refused as unknown without it. */
+  /** All other codes. Refused as unknown if absent. */
   unknown?(request: RawRequest, context: Context): Answer<string>
 }
 
-/** A robot that has some of the commands so far: what is left out is refused as not implemented. */
+/** A robot with some of the commands. The others are refused as not implemented. */
 export type PartialRobot = Partial<Robot>
 
 /** Serves apps. */
@@ -32,10 +32,10 @@ export class ExampleRobot implements Robot {
     addExamples(ExampleRobot, service.methods)
   }
 
-  /** Whether to answer also what would move a robot. */
+  /** Responds also to commands that would move a robot. */
   readonly pretendMotion: boolean
 
-  /** `pretendMotion`: answers also what would move a robot. */
+  /** `pretendMotion`: responds also to commands that would move a robot. */
   constructor({ pretendMotion = false }: { pretendMotion?: boolean } = {}) {
     this.pretendMotion = pretendMotion
   }
@@ -53,13 +53,13 @@ export class Reporter {
   /** The server. */
   protected readonly server: Server
 
-  /** Reports to the apps of a server. */
+  /** Creates the reporter of a server. */
   constructor(server: Server) {
     this.server = server
   }
 }
 
-/** What the compiler says of a robot that lacks a method: `implements Robot` is the one word. */
+/** A robot that lacks a method: the compiler refuses `implements Robot` for it. */
 export class Half implements PartialRobot {
   /** Refuses with a declared error. */
   startDrive(): never {

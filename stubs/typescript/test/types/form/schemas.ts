@@ -1,4 +1,4 @@
-// What is emitted as groups/GROUP/schemas.ts: what the runtime has to know of each type, under the type's own name.
+// The form of the generated groups/GROUP/schemas.ts: the runtime's schema of each type, under the type's name.
 
 import type { Enum, Struct } from 'fc-protocol/runtime'
 import * as messages from './messages.ts'

@@ -1,4 +1,4 @@
-// What is emitted as groups/GROUP/streams.ts.
+// The form of the generated groups/GROUP/streams.ts.
 
 import type { AnyStream, Stream } from 'fc-protocol/runtime'
 import type * as messages from './messages.ts'
@@ -30,5 +30,5 @@ export const pictures: Stream<Uint8Array> = {
   mediaType: 'image/png',
 }
 
-/** The streams of the group, by what methods call them. */
+/** The streams of the group, by the names in their methods. */
 export default { Scans: scans, Pictures: pictures } as Readonly<Record<string, AnyStream>>

@@ -1,4 +1,4 @@
-// How a program uses what is emitted.
+// A program's use of the generated files.
 
 import { CallError, acceptedIn } from 'fc-protocol/runtime'
 import type { Platform, ServerPlatform } from 'fc-protocol/runtime'

@@ -1,14 +1,14 @@
-// What is emitted as wire.ts: the numbers of the protocol.
+// The form of the generated wire.ts: the numbers of the protocol.
 
 import type { Struct, Wire } from 'fc-protocol/runtime'
 
-/** The keys that every request and every report carries beside its own. */
+/** The envelope's keys of every request and report. */
 export interface RequestEnvelope {
   /** Timestamp in milliseconds. */
   time?: bigint | undefined
 }
 
-/** The keys that every response and every acknowledgement carries beside its own. */
+/** The envelope's keys of every response and acknowledgement. */
 export interface ResponseEnvelope {
   /** Timestamp in milliseconds. */
   time?: bigint | undefined
@@ -40,7 +40,7 @@ export type ResultCode = 0 | 1 | 2 | 3 | 4 | (number & {})
 /** Result codes. */
 export const ResultCode = { Success: 0, Protocol: 1, Timeout: 2, Invalid: 3, Expired: 4 } as const
 
-/** The protocol, beneath its messages. */
+/** The protocol below its messages. */
 export const wire: Wire = {
   name: 'toy',
   host: '127.0.0.1',
