@@ -22,14 +22,14 @@ struct Round {
   double cpu = 0;
 };
 
-/// The processes of a peer.
+/// The server and the caller process of a peer.
 class Pair {
  public:
   explicit Pair(const Peer& peer)
       : server_(0, std::string("serve ") + peer.name),
         caller_(1, std::string("call ") + peer.name + ' ' + server_.first()) {}
 
-  /// How long one round took, and what that cost both processes.
+  /// Runs one round. Returns its time, and the CPU time of both processes.
   Round round(int in_flight, int calls) {
     server_.ask("begin");
     caller_.ask("begin");
@@ -62,7 +62,7 @@ struct Measured {
 
 nlohmann::ordered_json scenario(std::vector<Measured>& all, int in_flight, Effort effort) {
   for (auto& one : all) {
-    // Until all is warm, and to find out how many calls a round is.
+    // Warms up, and doubles the calls of a round until it is long enough.
     one.calls = 64 * in_flight;
     while (one.pair->round(in_flight, one.calls).seconds < effort.seconds) one.calls *= 2;
     one.rounds.clear();
@@ -77,7 +77,7 @@ nlohmann::ordered_json scenario(std::vector<Measured>& all, int in_flight, Effor
                                    {"p50", one.middle(&Round::p50)},
                                    {"p99", one.middle(&Round::p99)},
                                    {"cpu", one.middle(&Round::cpu)}};
-    // A window of the floor is no call: it has no time of its own.
+    // A window of the baseline is not a call, so its latency means nothing.
     if (one.peer->windows && in_flight > 1) figures["p50"] = figures["p99"] = nullptr;
     found.push_back(std::move(figures));
   }

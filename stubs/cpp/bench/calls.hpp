@@ -1,4 +1,5 @@
-// Calls over loopback: each peer has a process that serves and one that calls, and the peers take turns.
+// Calls over loopback. Each peer has a server process and a caller process, and the peers take
+// turns.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,10 +9,10 @@
 
 namespace bench {
 
-/// All that are compared.
+/// All compared peers.
 extern const Peer* const peers[3];
 
-/// What calls cost with each number in flight, and with each peer, as the report has it.
+/// Returns the cost of calls for each peer and number in flight, in the format of the report.
 [[nodiscard]] nlohmann::ordered_json calls(Effort effort);
 
 }  // namespace bench

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What was made, so that no compiler leaves it out.
+/// Uses the results, so that the compiler does not remove the work.
 volatile std::size_t made = 0;
 
 void demand(bool holds, const char* what) {
@@ -32,7 +32,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// MD5 by OpenSSL, so that the floor stands on nothing of the package.
+/// MD5 by OpenSSL, so that the baseline is independent of the package.
 class Digest {
  public:
   static constexpr std::size_t kSize = 16;
@@ -42,7 +42,7 @@ class Digest {
   Digest& operator=(const Digest&) = delete;
   ~Digest() { EVP_MD_CTX_free(context_); }
 
-  /// The digest of data, until the next.
+  /// Returns a digest. The view is valid until the next call.
   std::string_view of(std::string_view data) {
     const bool is_made = EVP_DigestInit_ex(context_, EVP_md5(), nullptr) == 1 &&
                          EVP_DigestUpdate(context_, data.data(), data.size()) == 1 &&
@@ -56,7 +56,7 @@ class Digest {
   unsigned char sum_[EVP_MAX_MD_SIZE] = {};
 };
 
-/// The least that reading and writing take: the digest, and all of the JSON.
+/// The least work of reading and writing: the digest, and all of the JSON.
 class Least {
  public:
   explicit Least(std::string frame) : frame_(std::move(frame)) {}
@@ -68,7 +68,7 @@ class Least {
     return json::parse(body);
   }
 
-  /// Behind a header that is ready but for the digest.
+  /// Encodes with a prepared header, in which only the digest changes.
   std::string encode(const json& value) {
     const std::string body = value.dump();
     std::string out;
@@ -78,7 +78,7 @@ class Least {
   }
 
  private:
-  /// The digest is the last of the header.
+  /// The digest is the last field of the header.
   const std::size_t kHeader = fc::protocol().header.length;
   const std::size_t kDigest = kHeader - Digest::kSize;
 
@@ -113,7 +113,7 @@ nlohmann::ordered_json message(const char* name, Effort effort) {
   };
   Least least(frame);
   const json plain = least.decode();
-  // Each side writes what it reads, all of it; nlohmann-json sorts the keys.
+  // Each side writes everything that it reads; nlohmann-json sorts the keys.
   encode();
   demand(out.size() == frame.size() && *decode(out).body == *known.body, "another message");
   demand(least.encode(plain).size() == frame.size(), "another text");

@@ -1,4 +1,4 @@
-// Frames to typed messages and back, beside nothing but the JSON and the MD5 of the same bytes.
+// Frames to typed messages and back, compared with the JSON and MD5 of the same bytes.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace bench {
 
-/// What each message costs, in microseconds, as the report has it.
+/// Returns the cost of each message in microseconds, in the format of the report.
 [[nodiscard]] nlohmann::ordered_json codec(Effort effort);
 
 }  // namespace bench

@@ -1,4 +1,4 @@
-// Measures the package beside JSON and MD5 alone, and beside gRPC.
+// Compares the package with plain JSON and MD5, and with gRPC.
 #include <grpcpp/grpcpp.h>
 
 #include <cstdio>
@@ -24,7 +24,7 @@ constexpr const char* kUsage =
     "--smoke   one tiny round: that all of it works, and no figures to go by\n"
     "--report  writes bench/packages/cpp.json, which the page about performance shows\n";
 
-/// Its name, where the system has one.
+/// Returns the name of the processor, if the system knows it.
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -100,7 +100,7 @@ int measured(bool is_smoke, bool is_report) {
   return 0;
 }
 
-/// One of the processes that serve and call.
+/// Runs a server or caller process.
 int work(int count, char** words) {
   for (const auto* peer : bench::peers) {
     if (std::strcmp(peer->name, words[2]) != 0) continue;

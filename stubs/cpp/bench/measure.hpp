@@ -1,4 +1,4 @@
-// Work on one thread, in CPU time of this process.
+// Measures work on one thread, in CPU time of this process.
 #pragma once
 
 #include <functional>
@@ -6,22 +6,22 @@
 
 namespace bench {
 
-/// How long to measure.
+/// The length of a measurement.
 struct Effort {
-  /// Rounds of all cases.
+  /// Rounds over all cases.
   int rounds;
-  /// Least seconds of a batch.
+  /// Least length of a batch, in seconds.
   double seconds;
 };
 
-/// The middle of some figures.
+/// Returns the median.
 [[nodiscard]] double median(std::vector<double> figures);
 
-/// CPU time of this process so far, in microseconds.
+/// Returns the CPU time of this process so far, in microseconds.
 [[nodiscard]] double cpu();
 
-/// Microseconds that each of some cases takes, the median of its rounds. The cases take turns, in
-/// another order each round, so that what disturbs one disturbs all.
+/// Returns the time of each case in microseconds, the median of its rounds. Each round runs the
+/// cases in another order, so that a disturbance affects them all.
 [[nodiscard]] std::vector<double> measure(const std::vector<std::function<void()>>& cases,
                                           Effort effort);
 

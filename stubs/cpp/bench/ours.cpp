@@ -8,7 +8,7 @@ namespace bench {
 
 namespace {
 
-/// FcAnswers for a station, with a message made for each call.
+/// Responds to queries of a station, with a new message for each call.
 class FcRobot : public fc::PartialRobot {
  public:
   fc_runtime::Replied<fc::GetStationResponse> get_station(

@@ -1,4 +1,4 @@
-// Who answers and who asks, with the same question and the same answer.
+// The compared servers and callers. All exchange the same request and response.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ constexpr const char* kHost = "127.0.0.1";
 constexpr std::int64_t kStation = 1'671'124'918'008;
 constexpr const char* kName = "gate1";
 
-/// One that answers, as long as it exists.
+/// A server, until its destruction.
 class Answering {
  public:
   Answering() = default;
@@ -21,7 +21,7 @@ class Answering {
   [[nodiscard]] virtual std::uint16_t port() const = 0;
 };
 
-/// One that asks. All that it gives says whether the answer was the right one.
+/// A caller. Its results tell whether the response was correct.
 class Asking {
  public:
   Asking() = default;
@@ -34,17 +34,17 @@ class Asking {
   virtual void begin(std::function<void(bool good)> done) = 0;
 };
 
-/// One of those that are compared.
+/// A compared peer.
 struct Peer {
   const char* name;
-  /// Its requests go in windows, one write each.
+  /// `true` if requests are sent in windows, one write each.
   bool windows;
   std::unique_ptr<Answering> (*answers)();
-  /// Connects to a port, for windows of so many calls.
+  /// Connects to a port, for windows of `window` calls.
   std::unique_ptr<Asking> (*asks)(std::uint16_t port, int window);
 };
 
-/// As many bytes, and nothing done with them.
+/// The baseline: the same number of bytes without processing.
 extern const Peer raw;
 /// This package.
 extern const Peer ours;

@@ -15,7 +15,7 @@ namespace bench {
 
 namespace {
 
-/// Bytes of the frame that asks, and of the frame that answers.
+/// Bytes of the request frame and of the response frame.
 constexpr std::size_t kAsks = 95;
 constexpr std::size_t kAnswers = 204;
 
@@ -63,7 +63,7 @@ void answer_all(int socket) {
   close(socket);
 }
 
-/// Threads that block; they end with the process.
+/// Uses blocking threads, which end with the process.
 class RawAnswers : public Answering {
  public:
   RawAnswers() {

@@ -13,7 +13,7 @@ namespace bench {
 
 namespace {
 
-/// GrpcAnswers for a station, with a message made for each call. Callbacks are what gRPC recommends.
+/// Responds to queries of a station, with a new message for each call. gRPC recommends callbacks.
 class GrpcRobot final : public Robot::CallbackService {
  public:
   grpc::ServerUnaryReactor* GetStation(grpc::CallbackServerContext* context,

@@ -30,12 +30,12 @@ double microseconds(Clock::duration time) {
   return std::chrono::duration<double, std::micro>(time).count();
 }
 
-/// Makes so many calls, and notes how long each takes.
+/// Makes `calls` calls and measures each.
 class Drive {
  public:
   Drive(Asking& asking, int calls) : asking_(&asking), open_(calls), times_(calls) {}
 
-  /// One after the other, each waited for.
+  /// Makes one call after the other.
   void alone() {
     for (double& time : times_) {
       const auto start = Clock::now();
@@ -44,7 +44,7 @@ class Drive {
     }
   }
 
-  /// So many at a time: each that ends has another one made.
+  /// Keeps `at_once` calls in flight: each completed call starts the next.
   void together(int at_once) {
     for (int index = 0; index < at_once; ++index) next();
     over_.get_future().wait();
@@ -52,7 +52,7 @@ class Drive {
 
   [[nodiscard]] bool good() const { return good_; }
 
-  /// The time that a share of all calls stayed below.
+  /// Returns the time at a quantile of all calls.
   [[nodiscard]] double at(double share) {
     std::sort(times_.begin(), times_.end());
     return times_[static_cast<std::size_t>(static_cast<double>(times_.size() - 1) * share)];
@@ -65,7 +65,8 @@ class Drive {
     asking_->begin([this, index, start = Clock::now()](bool is_good) {
       times_[index] = microseconds(Clock::now() - start);
       if (!is_good) good_ = false;
-      // Another one first: who waits for the last may be gone behind it.
+      // Starts the next call first: after the last call, the waiting thread may destroy this
+      // object.
       next();
       if (--open_ == 0) over_.set_value();
     });
@@ -94,7 +95,7 @@ std::string drive(const Peer& peer, Asking& asking, int in_flight, int calls) {
   return said.str();
 }
 
-/// Answers each line until there are no more.
+/// Prints a reply to each line until the input ends.
 template <class Other>
 int obey(const std::string& first, const Other& other) {
   std::cout << first << std::endl;
@@ -121,7 +122,7 @@ int serve(const Peer& peer) {
 }
 
 int call(const Peer& peer, int port) {
-  // One connection for all, or one for each size of a window.
+  // One connection for all, or one per window size.
   std::map<int, std::unique_ptr<Asking>> asking;
   return obey("ready", [&](const std::string& line) {
     int in_flight = 0;
@@ -155,7 +156,7 @@ Worker::Worker(int core, const std::string& words) {
       cpu_set_t set;
       CPU_ZERO(&set);
       CPU_SET(core, &set);
-      // Where it may not, it shares.
+      // Without permission, the process shares its core.
       sched_setaffinity(0, sizeof set, &set);
     }
     execv("/proc/self/exe", pointers.data());
@@ -169,7 +170,7 @@ Worker::Worker(int core, const std::string& words) {
 }
 
 Worker::~Worker() {
-  // Its input ends, and so does it.
+  // Closing its input ends the process.
   std::fclose(questions_);
   std::fclose(answers_);
   waitpid(process_, nullptr, 0);

@@ -1,4 +1,4 @@
-// A process that answers, or one that asks, on a core of its own.
+// A server or caller process on its own core.
 #pragma once
 
 #include <sys/types.h>
@@ -10,26 +10,27 @@ namespace bench {
 
 struct Peer;
 
-/// Serves a peer and says at which port; then does what it is told, until its input ends: `begin`
-/// and `end` are around what costs CPU time, which `end` answers in microseconds.
+/// Serves a peer, prints its port, and obeys its input. `begin` starts a measurement; `end` prints
+/// its CPU time in microseconds.
 int serve(const Peer& peer);
 
-/// Calls a peer at a port, and does what it is told: also `IN_FLIGHT CALLS`, which is answered by
-/// seconds, and by the time of the middle call and of one of the slowest of a hundred in microseconds.
+/// Calls a peer at a port and obeys its input. In addition to `begin` and `end`, the line
+/// `IN_FLIGHT CALLS` runs a round. It prints the seconds of the round, and the median and 99th
+/// percentile of a call in microseconds.
 int call(const Peer& peer, int port);
 
-/// Such a process, started.
+/// A started worker process.
 class Worker {
  public:
-  /// Starts this program with other words, on a core where there are several.
+  /// Starts this program with the arguments `words`, on its own core if there are several.
   Worker(int core, const std::string& words);
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
   ~Worker();
 
-  /// Asks, and waits for the answer.
+  /// Sends a line and waits for the reply.
   std::string ask(const std::string& question);
-  /// What it has said first.
+  /// The first line of its output.
   [[nodiscard]] const std::string& first() const { return first_; }
 
  private:

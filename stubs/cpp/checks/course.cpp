@@ -1,4 +1,4 @@
-// Every command of the odd protocol, called over TCP; and what its types say that are called like something else.
+// Calls every command of the odd protocol over TCP, and checks the types whose names had to change.
 #include <cstdio>
 #include <limits>
 #include <sstream>
@@ -23,7 +23,7 @@ int call_all() {
   robot.address = "127.0.0.1";
   robot.command_port = std::uint16_t{0};
   robot.data_port = std::uint16_t{0};
-  // The odd protocol gives a handler a millisecond, which a busy machine does not.
+  // The odd protocol limits handlers to one millisecond, which is too short on a busy machine.
   robot.handler_timeout = std::chrono::seconds(60);
   const auto server = fc_runtime::Server::bind(
       odd_line::protocol(), odd_line::service(std::make_shared<odd_line::ExampleRobot>(true)),
@@ -55,7 +55,7 @@ void said() {
   printed << request;
   check(printed.str().find("it's") == std::string::npos, "a secret is not printed");
   check(fc_runtime::to_json(request)->find("it's") != std::string::npos, "but sent");
-  // Groups that use each other.
+  // Groups that use types of each other.
   const auto here =
       fc_runtime::from_json<odd_line::Here>(R"({"there":[{"either":{"far":1},"going":"z"}]})");
   check(here && std::get<odd_line::Far>(here->there.at(0).either).far == 1, "the second of two");
@@ -67,7 +67,7 @@ void said() {
   check(Drive::is_accepted_in(Going::Mro) && !Drive::is_accepted_in(Going::Name), "states");
   check(normally_follows(Going::Name, Going::Mro), "an order");
   check(odd_line::list().at(0).near == 1, "a table called like a type");
-  // Macros and the ends of integers.
+  // Names of macros, and the limits of integers.
   const auto ends = fc_runtime::example<odd_line::UnixResponse>();
   check(ends.lowest == std::numeric_limits<std::int64_t>::min(), "the lowest");
   check(ends.highest == std::numeric_limits<std::uint64_t>::max(), "the highest");

@@ -17,7 +17,7 @@ CHECKS = Path(__file__).resolve().parent
 PACKAGE = CHECKS.parent
 ROOT = PACKAGE.parents[1]
 FC = os.environ.get("FC", str(ROOT / "target/debug/fcproto"))
-# GNU C++ is what compilers and CMake take by default; only there `linux` is a macro.
+# Compilers and CMake default to GNU C++. Only there, `linux` is a macro.
 STRICT = "-std=gnu++17 -O0 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
 ASIO = "-DASIO_STANDALONE -DASIO_NO_DEPRECATED -DASIO_DISABLE_STD_ALIGNED_ALLOC".split()
 
@@ -107,7 +107,7 @@ class Package(unittest.TestCase):
         self.runs(project, self.package(project, 12), CHECKS / "course.cpp")
         ok, text = project.compile("-fsyntax-only", project.folder / "out/tests/samples.cpp")
         self.assertTrue(ok, text)
-        # Who calls what is withdrawn reads in the warning why, and what to use instead.
+        # The warning at a withdrawn command states the reason and the replacement.
         user = project.folder / "withdrawn.cpp"
         user.write_text('#include "odd_line/client.hpp"\nauto drive = &odd_line::Client::drive;\n', encoding="utf-8")
         ok, text = project.compile("-fsyntax-only", user)
@@ -121,7 +121,7 @@ class Package(unittest.TestCase):
                 self.addCleanup(project.remove)
                 project.generate()
                 package = self.package(project, 4)
-                # The test of the vectors takes the protocol by the name of this package's.
+                # The vector test includes the protocol by its name in this package.
                 shim = project.generated / "include/fc/protocol.hpp"
                 shim.parent.mkdir(parents=True)
                 shim.write_text(f'#include "{name}/protocol.hpp"\nnamespace fc = {name};\n', encoding="utf-8")
@@ -140,7 +140,7 @@ class Readme(unittest.TestCase):
             self.assertEqual(len(samples), 2)
             with tempfile.TemporaryDirectory() as folder:
                 source = Path(folder) / "samples.cpp"
-                # Each is a program or a file of its own; together they are read once.
+                # The samples are separate programs and files, but one compilation is enough.
                 source.write_text("".join(samples), encoding="utf-8")
                 ok, text = run("g++", *STRICT, *include, "-fsyntax-only", source)
                 self.assertTrue(ok, text)
@@ -196,7 +196,7 @@ class Lockstep(unittest.TestCase):
         ok, text = self.checked(self.user())
         self.assertFalse(ok)
         self.assertIn("count_pulses", text)
-        # The same word in the place of the other is all it takes.
+        # Replacing one word is enough.
         user = self.user().replace("public meter::Robot", "public meter::PartialRobot") + (
             "\nmeter::CountPulsesResponse count(const meter::Client& client);\n"
             "meter::CountPulsesResponse count(const meter::Client& client) {\n"

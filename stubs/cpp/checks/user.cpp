@@ -1,4 +1,4 @@
-// A program that uses the meter: a change of its spec that it does not follow is an error here.
+// A program that uses the meter. If it does not follow a change of the spec, it does not compile.
 #include "meter/client.hpp"
 #include "meter/robot.hpp"
 

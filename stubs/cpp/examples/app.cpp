@@ -1,5 +1,5 @@
-// An app that tries out a robot: calls every command of the spec with its example, takes the robot's
-// reports and the picture of a map, and prints what came of each.
+// An app that tests a robot. It calls every command with the example in the spec, receives the
+// reports and the picture of a map, and prints the outcome of each.
 #include <map>
 #include <set>
 #include <type_traits>
@@ -16,10 +16,10 @@ constexpr const char* kUsage =
     "Without ports, those of the spec. With --gzip-from, whatever has so many bytes is "
     "compressed.\nWithout --lang, the language of the environment.\n";
 
-/// How long the app waits for what the robot sends of its own accord.
+/// Longest wait for data that the robot sends unasked.
 constexpr std::chrono::seconds kPatience{20};
 
-/// What came of each operation so far.
+/// The outcome of each operation so far.
 class Tour {
  public:
   explicit Tour(bool is_chinese) : is_chinese_(is_chinese) {
@@ -27,7 +27,7 @@ class Tour {
                 pick("说明", "Title"), pick("结果", "Outcome")});
   }
 
-  /// The text of the language in which it speaks.
+  /// Returns the string in the language of the user.
   template <typename T>
   [[nodiscard]] T pick(T zh, T en) const {
     return is_chinese_ ? zh : en;
@@ -62,7 +62,7 @@ void call_all(const fc::Client& client, Tour& tour) {
   });
 }
 
-/// Waits until every report has come once.
+/// Waits until every report has arrived once.
 bool receive_all(const fc::Reports& reports, Tour& tour) {
   std::set<std::uint16_t> missing;
   fc::for_each_report([&](const auto& any) {
@@ -93,8 +93,8 @@ bool receive_all(const fc::Reports& reports, Tour& tour) {
   return missing.empty();
 }
 
-/// Waits for the picture that the call for a map image has ordered. Its digest has been verified by
-/// the time it is here.
+/// Waits for the picture that the call for a map image requested. The runtime has verified its
+/// digest.
 bool receive_picture(const fc_runtime::DataConnection& data, Tour& tour) {
   const auto frame = data.next(kPatience);
   if (!frame) {

@@ -1,5 +1,5 @@
-// An app for trying out a connection under trouble that somebody else makes: reads on while the
-// connection is cut, gives calls up, and calls on while the robot ends.
+// An app that tests a connection under external disturbance. It continues to read while the
+// connection is cut, cancels calls, and calls while the robot shuts down.
 #include <atomic>
 #include <mutex>
 #include <optional>
@@ -18,12 +18,12 @@ constexpr const char* kUsage =
 
 /// Calls in flight at a time.
 constexpr int kAtOnce = 64;
-/// Reads that are to be answered though the connection is cut.
+/// Reads that must succeed although the connection is cut.
 constexpr int kReads = 1000;
 
 using Fault = std::optional<fc_runtime::CallError>;
 
-/// So many of them at a time, each in a thread; the first fault of any.
+/// Runs `kAtOnce` threads and returns the first error.
 template <class Work>
 Fault all(const Work& work) {
   std::mutex mutex;
@@ -46,7 +46,7 @@ Fault call(const fc::Client& client) {
   return std::move(answer).error();
 }
 
-/// Each call is a read, so it is sent again after a loss, and every single one is answered.
+/// Each call is a read and is repeated after a loss, so every call succeeds.
 Fault read(const fc::Client& client) {
   std::atomic<int> left{kReads};
   return all([&]() -> Fault {
@@ -57,19 +57,18 @@ Fault read(const fc::Client& client) {
   });
 }
 
-/// Sends calls and cancels them before an answer can have come; the connection serves on.
+/// Sends calls and cancels them before a response can arrive. The connection remains usable.
 Fault give_up(const fc::Client& client) {
   std::vector<fc_runtime::PendingCall> calls;
   for (int at = 0; at < kAtOnce; ++at) {
-    // Whatever comes of it, nobody is interested any more.
+    // The outcome is ignored.
     calls.push_back(client.connection().call_async(fc::GetRobotSnRequest{}, [](const auto&) {}));
   }
   for (const auto& pending : calls) pending.cancel();
   return call(client);
 }
 
-/// Calls until the robot has gone. Every call has an end, and the end of the last ones says that the
-/// connection was lost.
+/// Calls until the robot has gone. Every call ends, and the last ones report a lost connection.
 Fault call_to_the_end(const fc::Client& client, std::atomic<int>& answered) {
   return all([&]() -> Fault {
     for (;;) {
@@ -109,7 +108,7 @@ int main(int count, char** words) {
     if (const Fault fault = give_up(*client)) return failed(to_string(*fault));
     say("given up: " + std::to_string(kAtOnce) + ", and the next one answered");
   }
-  // Another one, which does not come back: that the robot has ended ends its calls.
+  // A client without reconnection: the end of the robot ends its calls.
   config.reconnect = std::nullopt;
   const auto client = fc::Client::connect(config);
   if (!client) return failed(to_string(client.error()));

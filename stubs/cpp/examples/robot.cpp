@@ -1,6 +1,6 @@
-// A robot to try an app against, and nothing else: answers every command with the spec's example, also
-// those that would move a real one, pushes every report once to each app, and sends the picture of a map
-// over the data port to any app that asks for one.
+// A simulated robot for testing apps. It responds to every command with the example in the spec,
+// including commands that would move a real robot. It pushes every report once to each app. It
+// sends the picture of a map over the data port to each app that requests one.
 #include "fc/robot.hpp"
 
 #include <pthread.h>
@@ -30,10 +30,10 @@ constexpr const char* kUsage =
     "takes so long over each command; with --gzip-from it compresses whatever has so many bytes; "
     "with --picture-scale the picture of a map is so many times as wide and high.\n";
 
-/// What is being handled when the robot is asked to end may take so long.
+/// Grace period for running handlers at shutdown.
 constexpr std::chrono::seconds kGrace{5};
 
-/// A small map as a portable graymap: a room with a wall around it.
+/// Returns a small map as a portable graymap: a room with a wall around it.
 std::string picture(std::size_t scale) {
   const std::size_t width = 64 * scale;
   const std::size_t height = 48 * scale;
@@ -47,7 +47,7 @@ std::string picture(std::size_t scale) {
   return map;
 }
 
-/// Does what the robot does of its own accord, in a thread of its own.
+/// Sends reports and pictures from its own thread.
 class Attendant {
  public:
   Attendant(const fc_runtime::Server& server, std::string picture)
@@ -84,7 +84,7 @@ class Attendant {
     }
   }
 
-  /// Pushes every report with the spec's example.
+  /// Pushes every report with the example in the spec.
   void push_all(fc_runtime::ConnectionId app) const {
     fc::for_each_report([&](const auto& any) {
       using Message = std::decay_t<decltype(any)>;
@@ -101,11 +101,11 @@ class Attendant {
     });
   }
 
-  /// Sends a picture to the app that has asked for one, under the id of its request.
+  /// Sends a picture to the app that requested it, with the id of the request.
   void send_picture(const fc_runtime::Context& context) const {
     const auto sent = server_->send_stream(context.connection, context.code, context.id, picture_);
     if (!sent) {
-      // The app may ask before its data connection has been accepted.
+      // The request may arrive before the data connection of the app.
       std::fprintf(stderr, "picture: %s\n", to_string(sent.error()).c_str());
     }
   }
@@ -123,7 +123,7 @@ class Attendant {
 
 int main(int count, char** words) {
   const Args args = parse(count, words, kUsage);
-  // Threads made from here on leave these signals to this one.
+  // Later threads inherit this mask and leave the signals to the main thread.
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -135,7 +135,7 @@ int main(int count, char** words) {
   config.command_port = args.command_port;
   config.data_port = args.data_port;
   config.gzip = args.gzip;
-  // There is nothing here that could move.
+  // The simulated robot has no motors, so all commands are allowed.
   const auto examples = fc::service(std::make_shared<fc::ExampleRobot>(true));
   std::mutex mutex;
   Attendant* attendant = nullptr;

@@ -1,4 +1,4 @@
-// What the programs share: their command line, and a table whose columns line up.
+// Shared parts of the examples: the command line, and a table with aligned columns.
 #pragma once
 
 #include <algorithm>
@@ -13,22 +13,22 @@
 
 #include "fc_runtime/client.hpp"
 
-/// The command line: which robot, at which ports.
+/// The command line: address and ports of the robot.
 struct Args {
   std::string host = "127.0.0.1";
   std::optional<std::uint16_t> command_port;
   std::optional<std::uint16_t> data_port;
-  /// How long the robot takes over each command.
+  /// Time of the robot for each command.
   std::chrono::milliseconds delay{0};
-  /// What is compressed.
+  /// Threshold and level of compression.
   fc_runtime::Gzip gzip;
-  /// How many times as wide and high the robot's picture is.
+  /// Scale of the picture; 1 is its normal size.
   std::size_t picture_scale = 1;
-  /// Whether it speaks Chinese, or else English.
+  /// `true` for output in Chinese, `false` for English.
   bool is_chinese = false;
 };
 
-/// Whether the language of the environment is Chinese, as POSIX has it.
+/// Returns `true` if the POSIX locale of the environment is Chinese.
 inline bool is_environment_chinese() {
   for (const char* name : {"LC_ALL", "LC_MESSAGES", "LANG"}) {
     const char* locale = std::getenv(name);
@@ -37,7 +37,7 @@ inline bool is_environment_chinese() {
   return false;
 }
 
-/// Reads the command line; says what is wrong with it and ends the program, if anything is.
+/// Parses the command line. Prints the error and exits if it is invalid.
 inline Args parse(int count, char** words, const char* usage) {
   Args args;
   args.is_chinese = is_environment_chinese();
@@ -80,7 +80,7 @@ inline Args parse(int count, char** words, const char* usage) {
   return args;
 }
 
-/// The robot and the ports as settings of a client.
+/// Returns the address and ports as settings of a client.
 inline fc_runtime::ClientConfig client_of(const Args& args) {
   fc_runtime::ClientConfig config;
   config.host = args.host;
@@ -90,8 +90,8 @@ inline fc_runtime::ClientConfig client_of(const Args& args) {
   return config;
 }
 
-/// Rows of cells, each column as wide as its widest cell on a terminal, where Chinese takes two
-/// columns a character.
+/// A table. Each column is as wide as its widest cell on a terminal; a Chinese character takes two
+/// columns.
 class Table {
  public:
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
@@ -115,7 +115,7 @@ class Table {
   }
 
  private:
-  /// A character of three bytes or more takes two columns, which is right for what stands here.
+  /// Counts two columns for a character of three bytes or more, which is right for these texts.
   static std::size_t columns(const std::string& text) {
     std::size_t count = 0;
     for (const char c : text) {

@@ -8,10 +8,10 @@ namespace fc_runtime {
 
 namespace {
 
-/// Beyond this much unsent, in bytes, reports are not acknowledged: a robot that does not read must
-/// not make the app collect acknowledgements for it.
+/// Limit of unsent bytes above which reports are not acknowledged. A robot that does not read must
+/// not make the app collect acknowledgements.
 constexpr std::size_t kAcknowledgeUpTo = std::size_t{256} * 1024;
-/// What a frame has to bring beside the stall timeout, in bytes per second.
+/// Least rate of a frame after the stall timeout, in bytes per second.
 constexpr std::uint64_t kLeast = 16 * 1024;
 
 CallError failed(CallErrorKind kind, const Loss& why) {
@@ -130,7 +130,7 @@ void ClientCore::send(std::uint64_t token, Call& call) {
     return;
   }
   counters_->bytes_out += out_.size() - before;
-  // Once more, and not as often as the connection is lost.
+  // A call is repeated at most once, after the first loss.
   call.repeat = call.repeat && call.stage == Stage::Unsent;
   call.stage = Stage::Sent;
   if (!call.repeat) std::string().swap(call.body);
@@ -172,7 +172,7 @@ void ClientCore::connected() {
   session_.reconnected();
   life_->connected();
   receivers_->connected();
-  // In the order in which they were made.
+  // In the order of the calls.
   std::vector<std::uint64_t> waiting;
   for (const auto& [token, call] : calls_) {
     if (call.stage != Stage::Sent) waiting.push_back(token);
@@ -210,7 +210,7 @@ void ClientCore::arrive(const Frame& frame, Instant now) {
   const FrameId id = frame.header.frame;
   const bool is_report = !id.response && id.kind == protocol_->report_kind;
   if (is_report) {
-    // What the app could not read is refused here, and not acknowledged to be found out later.
+    // An unreadable report is refused instead of acknowledged.
     if (const auto error = check_report(id.code, frame.data)) {
       ++counters_->reports_invalid;
       answer(id, protocol_->results.invalid, error->name());
@@ -235,7 +235,7 @@ void ClientCore::arrive(const Frame& frame, Instant now) {
       break;
     case Meaning::Command:
     case Meaning::Stream:
-      // Apps serve no commands, and streams have a port of their own.
+      // Apps handle no commands, and streams use the data port.
       answer(id, protocol_->results.protocol);
       break;
   }
@@ -292,7 +292,7 @@ void ClientCore::report(const Frame& frame, Instant now) {
   answer(id, protocol_->results.success);
 }
 
-/// Replies with nothing but a result; not at all where no response can carry it.
+/// Sends a response with a result alone. Sends nothing if responses cannot carry the result.
 void ClientCore::answer(FrameId id, const ResultText& result, std::string_view why) {
   const bool can_say = result.code == protocol_->results.success.code || protocol_->has_result();
   if (!can_say || out_.size() + unwritten_ >= kAcknowledgeUpTo) return;
@@ -301,7 +301,7 @@ void ClientCore::answer(FrameId id, const ResultText& result, std::string_view w
   id.response = true;
   const Envelope envelope{unix_ms(), result.code, std::move(text)};
   const std::size_t before = out_.size();
-  // An envelope alone fits into any limit worth its name; if not, the robot repeats itself.
+  // An envelope alone fits into any reasonable limit. Otherwise the robot repeats the request.
   static_cast<void>(
       encoder_.append(out_, id, write_envelope(protocol_->response_envelope, envelope)));
   counters_->bytes_out += out_.size() - before;
@@ -324,7 +324,7 @@ void ClientCore::close(const Loss& why) {
   receivers_->close();
 }
 
-/// Ends the calls that must not be sent twice, and keeps the others for the next connection.
+/// Ends the calls that must not be sent twice. Keeps the others for the next connection.
 void ClientCore::end_calls(bool for_good, const Loss& why) {
   if (!for_good) out_.clear();
   const auto ends = [&](FrameId, Token token) {

@@ -17,7 +17,7 @@ namespace detail {
 
 namespace {
 
-/// Whether the text as a whole is not JSON; that goes before all else that is wrong with it.
+/// Returns `true` if the text as a whole is not JSON. This error takes precedence over all others.
 bool is_broken(std::string_view text, const Allowance& allowance, BodyError& error) {
   switch (error.kind) {
     case BodyErrorKind::BadJson:
@@ -52,7 +52,7 @@ bool matches(std::string_view text, std::string_view pattern) {
     if (known == compiled.end()) {
       known = compiled.try_emplace(std::string(pattern), pattern).first;
     }
-    // Entries stay where they are.
+    // The addresses of map entries are stable.
     found = &known->second;
   }
   return found->matches(text);
@@ -109,13 +109,13 @@ bool read_number_text(Reader& reader, const Field& field, std::string& out, std:
       is_beyond = is_beyond || value >> 60U != 0;
       value = value << 4U | static_cast<std::uint64_t>(digit);
     }
-    // What is behind the number goes first: with that, it is none.
+    // Invalid digits take precedence: with them, the string is not a number at all.
     if (is_beyond) {
       return reader.fail(BodyErrorKind::OutOfRange, start, "the number is too large");
     }
     out = std::to_string(value);
   }
-  // What is no number has to be wrong by its type, not by its notation, and white space is none.
+  // A string that is not a number has the wrong type. White space is not allowed either.
   const char first = out.empty() ? ' ' : out.front();
   return first == '-' || (first >= '0' && first <= '9') ||
          reader.fail(BodyErrorKind::WrongType, start, "the string does not hold a number");
@@ -125,7 +125,7 @@ bool choose(Reader& reader, const std::vector<RequiredKeys>& variants, std::size
   if (reader.peek() != '{') return reader.unexpected("an object");
   const std::size_t start = reader.offset();
   Reader ahead = reader;
-  // Which required fields of each variant have come.
+  // The required fields of each variant that were found.
   std::vector<std::vector<bool>> present;
   present.reserve(variants.size());
   for (const auto& variant : variants) present.emplace_back(variant.size());
@@ -168,7 +168,7 @@ bool read_object(std::string_view text, const Allowance& allowance, ReadInto rea
     error = BodyError{BodyErrorKind::NotUtf8, "", 0, "send UTF-8"};
     return false;
   }
-  // No bytes stand for an object without keys.
+  // An empty body means an object without keys.
   if (text.empty()) text = "{}";
   Reader reader(text, allowance);
   if (reader.peek() != '{') {
@@ -181,7 +181,7 @@ bool read_object(std::string_view text, const Allowance& allowance, ReadInto rea
   if (read(reader, out, beside) && reader.finish()) return true;
   error = reader.take_error();
   is_broken(text, allowance, error);
-  // What is wrong with the text as JSON has a place in the text, and none in the message.
+  // An error of the JSON syntax has an offset in the text, but no path in the message.
   if (error.kind == BodyErrorKind::BadJson || error.kind == BodyErrorKind::TooDeep) {
     error.path.clear();
   }

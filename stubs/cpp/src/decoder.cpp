@@ -7,13 +7,13 @@ namespace fc_runtime {
 
 namespace {
 
-/// Memory that an empty buffer may keep for the next frame, in bytes.
+/// Capacity that an empty buffer may keep for the next frame, in bytes.
 constexpr std::size_t kKeep = std::size_t{2} << 20U;
-/// How many times the longest frame a search may look through without success: heads that lie inside each
-/// other must not cost more work than they cost bytes.
+/// Longest search, in multiples of the longest frame. Nested heads must not cause more work than
+/// bytes.
 constexpr std::uint64_t kSearch = 4;
 
-/// Whether bytes begin like a head, as far as they go.
+/// Returns `true` if the bytes match the start of a head.
 bool opens(std::string_view bytes, std::string_view head) {
   const std::size_t length = std::min(bytes.size(), head.size());
   return bytes.substr(0, length) == head.substr(0, length);
@@ -100,7 +100,7 @@ Result<std::optional<Header>, FrameError> Decoder::locate() const {
   return std::optional(detail::read_header(*protocol_, held));
 }
 
-/// Looks at a whole frame in the order that decides which of several errors it has, and inflates it.
+/// Checks a complete frame and decompresses its data. The order decides between several errors.
 std::optional<FrameError> Decoder::check(const Header& header, std::string_view data) {
   const auto fault = [&](FrameErrorKind kind) { return FrameError{kind, header.frame}; };
   const Protocol& protocol = *protocol_;
@@ -143,7 +143,7 @@ std::optional<FrameError> Decoder::check(const Header& header, std::string_view 
   return std::nullopt;
 }
 
-/// Whether a search has looked at too much without success.
+/// Returns `true` if the search has tried too many bytes without success.
 bool Decoder::give_up(const Header& header) {
   tried_ += header.total_length;
   if (tried_ <= kSearch * limits_.frame_bytes) return false;
@@ -151,7 +151,7 @@ bool Decoder::give_up(const Header& header) {
   return true;
 }
 
-/// Gives up the place at the front and goes to the next that may be a head.
+/// Skips to the next position that may be a head.
 void Decoder::search() {
   const std::string_view held = unread();
   std::size_t next = 1;

@@ -27,7 +27,7 @@ constexpr std::uint32_t turned(std::uint32_t word, unsigned bits) {
   return word << bits | word >> (32U - bits);
 }
 
-/// One of the sixty-four steps. The compiler unrolls the loop around it.
+/// One of the 64 steps. The compiler unrolls the loop around it.
 template <unsigned Round>
 inline void step(std::uint32_t& a, std::uint32_t b, std::uint32_t c, std::uint32_t d,
                  std::uint32_t word, std::uint32_t sine, unsigned turn) {
@@ -39,7 +39,8 @@ inline void step(std::uint32_t& a, std::uint32_t b, std::uint32_t c, std::uint32
   a = b + turned(a + mixed + word + sine, turn);
 }
 
-/// Which word each step of a round takes: `First`, and `Stride` further each time.
+/// Runs the steps of a round. The first step takes word `First`; each next one advances by
+/// `Stride`.
 template <unsigned Round, unsigned First, unsigned Stride>
 inline void round(std::array<std::uint32_t, 4>& state, const std::array<std::uint32_t, 16>& words) {
   auto [a, b, c, d] = state;

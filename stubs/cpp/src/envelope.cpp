@@ -8,7 +8,7 @@ namespace fc_runtime {
 
 namespace {
 
-/// Reads one key of an envelope into its place, and looks at its range.
+/// Reads the value of an envelope key and checks its constraints.
 template <class T>
 bool read_part(Reader& reader, const EnvelopeKey& key, std::optional<T>& out) {
   reader.peek();
@@ -22,7 +22,7 @@ bool read_part(Reader& reader, const EnvelopeKey& key, std::optional<T>& out) {
   return detail::keeps(key.field, out, breach) || reader.fail(breach.kind, start, breach.detail);
 }
 
-/// An object of which nothing but the keys beside it is read.
+/// Reads the additional keys of an object and skips all others.
 bool read_beside_alone(Reader& reader, void* /*message*/, Beside* beside) {
   if (!reader.begin_object()) return false;
   while (!reader.end_object()) {

@@ -13,19 +13,19 @@ namespace {
 
 constexpr std::string_view kHeader("\x1F\x8B\x08\0\0\0\0\0\0\xFF", 10);
 constexpr std::size_t kTrailer = 8;
-/// Raw deflate: the wrapper of a member is written and read here.
+/// Raw deflate: this file reads and writes the gzip header and trailer.
 constexpr int kRaw = -15;
-/// Least room for a first step of inflating, in bytes.
+/// Least size of the output for a first step, in bytes.
 constexpr std::size_t kFirstRoom = 4096;
 
 const Bytef* bytes_of(std::string_view data) { return reinterpret_cast<const Bytef*>(data.data()); }
 
-/// zlib counts in 32 bits; no frame is longer.
+/// zlib counts in 32 bits. No frame is longer.
 uInt short_length(std::size_t length) {
   return static_cast<uInt>(std::min<std::size_t>(length, std::numeric_limits<uInt>::max()));
 }
 
-/// The last fields of a member: checksum and length modulo 2^32 of what is in it.
+/// Returns the trailer of a member: the checksum and the length modulo 2^32 of its data.
 std::array<char, kTrailer> trailer_of(std::string_view data) {
   const auto sum = static_cast<std::uint32_t>(crc32_z(0, bytes_of(data), data.size()));
   const auto length = static_cast<std::uint32_t>(data.size());
@@ -37,7 +37,8 @@ std::array<char, kTrailer> trailer_of(std::string_view data) {
   return out;
 }
 
-/// What follows the header of a member, with the optional fields that some compressors write.
+/// Returns the rest of a member after its header, including optional fields that some compressors
+/// write.
 std::optional<std::string_view> skip_header(std::string_view member) {
   if (member.size() < kHeader.size() || member.substr(0, 3) != kHeader.substr(0, 3)) return {};
   const auto flags = static_cast<unsigned char>(member[3]);
@@ -90,7 +91,7 @@ bool Deflater::member(std::string_view data, std::string& out) {
   if (!state_->good || data.size() <= kHeader.size() + kTrailer) return false;
   z_stream& stream = state_->stream;
   if (deflateReset(&stream) != Z_OK) return false;
-  // What does not fit into the length of the data is sent plain.
+  // Data that does not shrink is sent uncompressed.
   out.resize(data.size() - kTrailer);
   std::copy(kHeader.begin(), kHeader.end(), out.begin());
   stream.next_in = const_cast<Bytef*>(bytes_of(data));
@@ -131,7 +132,7 @@ Inflated Inflater::inflate(std::string_view member, std::size_t plain, std::stri
   std::size_t filled = 0;
   std::size_t room = std::max(deflated->size() * 4, kFirstRoom);
   for (bool ended = false; !ended;) {
-    // Once it is full the stream has to end; a byte more is one too many.
+    // A stream that continues after the announced length is too long.
     char one_too_many = 0;
     out.resize(std::min(plain, room));
     const std::size_t left = out.size() - filled;
@@ -144,7 +145,7 @@ Inflated Inflater::inflate(std::string_view member, std::size_t plain, std::stri
     if (left == 0 && produced > 0) return Inflated::Length;
     filled += produced;
     ended = status == Z_STREAM_END;
-    // The input is used up, and the stream wants more of it.
+    // The input has ended before the stream.
     if (!ended && (stream.avail_out > 0 || produced == 0)) return Inflated::Damaged;
     if (filled == out.size()) room *= 2;
   }

@@ -1,4 +1,4 @@
-// The header of frames, by its layout as data; and what is looked up in a protocol.
+// Reads and writes frame headers by their layout, and looks up parts of a protocol.
 #include <algorithm>
 #include <limits>
 
@@ -53,7 +53,7 @@ void write_integer(const HeaderLayout& layout, const HeaderField& field, std::ui
   }
 }
 
-/// Whether the digest is an integer that travels with its last byte first.
+/// Returns `true` if the digest is an integer with the least significant byte first.
 bool is_turned(const HeaderLayout& layout) {
   return layout.digest == DigestAlgorithm::Crc32 && !layout.big_endian;
 }

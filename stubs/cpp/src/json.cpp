@@ -9,7 +9,7 @@ namespace fc_runtime {
 
 namespace {
 
-/// For a text that has been checked.
+/// The limits for a text that was checked before.
 constexpr Allowance kAny{1024, static_cast<std::size_t>(-1), static_cast<std::size_t>(-1)};
 
 }  // namespace

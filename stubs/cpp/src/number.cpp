@@ -10,7 +10,8 @@ namespace fc_runtime {
 
 namespace {
 
-/// What a number in any notation amounts to, its sign aside. Exactly, unlike by way of a double.
+/// The kind of a number in any notation, without its sign. Exact, unlike a conversion over a
+/// double.
 enum class Amount { Integer, TooLarge, Fraction };
 
 Amount amount_of(std::string_view number, std::uint64_t& magnitude) {
@@ -22,7 +23,7 @@ Amount amount_of(std::string_view number, std::uint64_t& magnitude) {
     number = number.substr(0, e);
     const bool negative = exponent.front() == '-';
     if (exponent.front() == '+' || negative) exponent.remove_prefix(1);
-    // Past this it matters only that it is far from zero.
+    // Beyond this exponent, only the order of magnitude matters.
     constexpr std::int64_t kFar = 1'000'000'000'000;
     for (const char digit : exponent) {
       power = power >= kFar ? kFar : power * 10 + (digit - '0');
@@ -92,7 +93,7 @@ bool Reader::whole_number(bool& negative, std::uint64_t& magnitude, bool& too_la
   if (first != '-' && !is_digit(first)) return unexpected("an integer");
   const std::size_t start = at_;
   negative = first == '-';
-  // Eighteen digits fit in any case, and are all that most numbers have.
+  // Eighteen digits always fit, and most numbers have no more.
   std::size_t at = at_ + (negative ? 1U : 0U);
   const std::size_t digits = at;
   magnitude = 0;
@@ -153,13 +154,14 @@ bool Reader::unsigned_integer(std::uint64_t most, std::uint64_t& out) {
 
 namespace {
 
-/// The nearest float. `from_chars` gives no value where the number is beyond the type on either side.
+/// Reads the nearest float. `from_chars` gives no value for a number outside the range of the type.
 template <class Float>
 bool nearest(std::string_view number, Float& out) {
   const auto read = std::from_chars(number.data(), number.data() + number.size(), out);
   if (read.ec == std::errc()) return std::isfinite(out);
   if (read.ec != std::errc::result_out_of_range) return false;
-  // Too small is zero; too large is refused. Which of them it is, its order of magnitude says.
+  // A number that is too small becomes zero; one that is too large is refused. The order of
+  // magnitude tells them apart.
   std::int64_t order = 0;
   bool significant = false;
   std::size_t index = !number.empty() && number.front() == '-' ? 1 : 0;

@@ -10,7 +10,7 @@ namespace {
 /// Most steps of a program. The generator refuses patterns that need more.
 constexpr std::size_t kMostSteps = 100'000;
 
-/// The code points of UTF-8.
+/// Returns the code points of UTF-8 text.
 std::u32string code_points(std::string_view text) {
   std::u32string out;
   out.reserve(text.size());
@@ -36,7 +36,7 @@ Pattern::Step jump(Kind kind, std::size_t first, std::size_t second = 0) {
 
 void append(Steps& out, const Steps& part) { out.insert(out.end(), part.begin(), part.end()); }
 
-/// `part?`, or `part*` if it comes back.
+/// Returns the steps of `part?`, or of `part*` if it repeats.
 Steps optional(const Steps& part, bool repeats) {
   Steps out{jump(Kind::Split, 1, part.size() + (repeats ? 2 : 1))};
   append(out, part);
@@ -53,7 +53,7 @@ class Parser {
  public:
   explicit Parser(std::string_view source) : source_(code_points(source)) {}
 
-  /// The whole program, or nothing for a source that is not a portable pattern.
+  /// Returns the whole program, or nothing for a source that is not a portable pattern.
   std::optional<Steps> program() {
     Steps steps = alternatives();
     if (!good_ || at_ != source_.size()) return std::nullopt;
@@ -121,7 +121,7 @@ class Parser {
     return {first, take('-') ? character() : first};
   }
 
-  /// A character, escaped or not.
+  /// Reads a character, escaped or not.
   char32_t character() {
     if (!take('\\')) return next();
     switch (const char32_t escaped = next()) {
@@ -190,7 +190,7 @@ class Parser {
   bool good_ = true;
 };
 
-/// The steps that a text has reached. Jumps are followed at once.
+/// The steps that the text has reached. Jumps are followed at once.
 class Reached {
  public:
   explicit Reached(const Steps& steps) : steps_(&steps), is_in_(steps.size()) {}

@@ -1,5 +1,5 @@
-// Regular expressions of the spec, in the portable form that the generator writes: characters, classes, groups, `|`, and
-// repetitions. A text is matched in one pass, in time proportional to its length, without recursion.
+// Regular expressions of the spec in the portable form of the generator: characters, classes,
+// groups, `|`, and repetitions. Matching takes one pass and linear time, without recursion.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace fc_runtime::detail {
 
-/// A pattern that a text has to match as a whole.
+/// A pattern that must match a text as a whole.
 class Pattern {
  public:
   /// Characters from `first` to `last`.
@@ -18,7 +18,7 @@ class Pattern {
     char32_t last;
   };
 
-  /// A step of the program that matches a text.
+  /// A step of the matching program.
   struct Step {
     enum class Kind : unsigned char {
       Class,  ///< Takes one character.
@@ -37,7 +37,7 @@ class Pattern {
   /// Compiles a pattern. One that is not in the portable form matches nothing.
   explicit Pattern(std::string_view source);
 
-  /// Returns `true` if the whole text, which is UTF-8, matches.
+  /// Returns `true` if the whole UTF-8 text matches.
   [[nodiscard]] bool matches(std::string_view text) const;
 
  private:

@@ -35,7 +35,7 @@ bool is_json(std::string_view text, const Allowance& allowance, BodyError& error
   return false;
 }
 
-// ---- faults ----
+// ---- errors ----
 
 bool Reader::fail(BodyErrorKind kind, std::size_t offset, std::string_view detail) {
   error_.kind = kind;
@@ -424,7 +424,7 @@ bool Reader::base64(std::string& out) {
       if (value < 0) return bad();
       bits = bits << 6U | static_cast<std::uint32_t>(value);
     }
-    // Bits that belong to no byte are zero, so that a text is the only one of its bytes.
+    // The unused bits must be zero, so that each byte array has exactly one encoding.
     if ((padding == 1 && (bits & 0xFFU) != 0) || (padding == 2 && (bits & 0xFFFFU) != 0)) {
       return bad();
     }

@@ -134,7 +134,7 @@ std::vector<std::shared_ptr<ReportQueue>> Receivers::all() {
 }
 
 std::optional<std::uint64_t> Receivers::push(const RawReport& report) {
-  // Only this gives to the queues; others only take.
+  // Only this thread adds to the queues; others only take.
   std::vector<std::shared_ptr<ReportQueue>> takers;
   std::vector<std::shared_ptr<ReportQueue>> full;
   for (auto& queue : all()) {

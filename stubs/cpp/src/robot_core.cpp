@@ -94,7 +94,7 @@ std::size_t RobotCore::held_for_nobody() const {
   std::size_t counted = 0;
   for (const auto& [id, peer] : peers_) counted += peer->handled_bytes();
   const std::size_t all = *shared_->handled_bytes;
-  // A handler may let go of its request meanwhile.
+  // A handler may release its request between the two reads.
   return all > counted ? all - counted : 0;
 }
 

@@ -1,4 +1,4 @@
-// One app's connection to a robot.
+// The connection of one app to a robot.
 #include <algorithm>
 
 #include "fc_runtime/envelope.hpp"
@@ -8,7 +8,7 @@ namespace fc_runtime::detail {
 
 namespace {
 
-/// Beyond this much unsent, in bytes, nothing is read or taken up.
+/// Limit of unsent bytes above which the robot reads and starts no more requests.
 constexpr std::size_t kHighWater = std::size_t{256} * 1024;
 
 Decoder decoder_of(const RobotShared& shared) {
@@ -19,7 +19,7 @@ Decoder decoder_of(const RobotShared& shared) {
   return decoder;
 }
 
-/// Repetitions to many apps do not coincide: up to an eighth longer, by connection.
+/// Spreads the repetitions to many apps: up to an eighth longer, by connection.
 AckPolicy spread(AckPolicy policy, ConnectionId id) {
   policy.timeout += policy.timeout * static_cast<std::int64_t>(id % 8) / 64;
   return policy;
@@ -50,7 +50,8 @@ RobotPeer::~RobotPeer() {
   drain();
 }
 
-/// The app waits no more. A handler that has begun cannot be stopped; any other does not begin.
+/// Notes that the app has stopped waiting. A handler that has begun cannot be stopped; any other
+/// does not begin.
 void RobotPeer::abandon(const AtWork& handler) {
   handler.abandoned->store(true);
   if (handler.settled->exchange(true)) ++shared_->abandoned;
@@ -100,7 +101,7 @@ void RobotPeer::pump(Instant now) {
     }
     ++shared_->counters.bad_frames;
     if (next.error().is_fatal()) {
-      // Requests before it are still answered.
+      // Earlier requests still get their responses.
       deaf_ = true;
     } else if (!next.error().frame.response) {
       answer(next.error().frame, shared_->protocol->results.protocol);
@@ -145,7 +146,7 @@ void RobotPeer::begin(FrameId frame, std::string_view text, Instant now) {
   ++shared_->counters.calls;
   const std::uint64_t handler = shared_->next_handler++;
   auto abandoned = std::make_shared<std::atomic<bool>>(false);
-  // The last to let go of it may be the handler.
+  // The handler may be the last owner.
   const auto forget = [bytes = shared_->handled_bytes](const std::string* held) {
     *bytes -= held->size();
     delete held;
@@ -188,12 +189,12 @@ void RobotPeer::answer(FrameId id, const Refusal& refusal) {
   append(id, write_envelope(shared_->protocol->response_envelope, envelope));
 }
 
-/// From now on the app has something to read: before, it could not be slow.
+/// Restarts the write timeout when the app gets something to read. Before that, it cannot be slow.
 void RobotPeer::begin_to_write() {
   if (unsent() == 0) last_written_ = now_;
 }
 
-/// Appends a response with this body; a refusal if that does not fit into a frame.
+/// Appends a response with this body, or a refusal if it does not fit into a frame.
 void RobotPeer::append(FrameId id, std::string_view body) {
   begin_to_write();
   const std::size_t before = out_.size();
@@ -220,7 +221,7 @@ void RobotPeer::push(Queued report, Instant now) {
   queued_bytes_ += bytes;
   queue_.push_back(std::move(report));
   send_reports(now);
-  // Where there is no room, the oldest that was not sent gives way.
+  // Without room, the oldest unsent report is dropped.
   while (!queue_.empty() && (queue_.size() > shared_->settings.limits.queued_reports ||
                              queued_bytes_ > shared_->settings.queued_bytes)) {
     Queued oldest = std::move(queue_.front());

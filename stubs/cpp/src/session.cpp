@@ -8,23 +8,24 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Slots that a table begins with.
+/// Initial number of slots of a table.
 constexpr std::size_t kFirstSlots = 16;
-/// As good as never.
+/// A time that is never reached in practice.
 constexpr auto kFar = std::chrono::hours(24 * 365);
 
 std::size_t half_of_ids(const Protocol& protocol) {
   return std::size_t{protocol.header.id_max()} / 2 + 1;
 }
 
-/// A peer repeats what is in flight, and as much of it as its own limit allows.
+/// Returns the number of reports to remember. A peer repeats the reports in flight, up to its own
+/// limit.
 std::size_t remembered(const Protocol& protocol, const Limits& limits) {
   const std::size_t most =
       std::max({limits.queued_reports, limits.in_flight, protocol.defaults.limits.in_flight});
   return std::min(most, half_of_ids(protocol));
 }
 
-/// Twice as long as a report may be repeated.
+/// Returns twice the time for which a report may be repeated.
 milliseconds age(AckPolicy ack) {
   const auto far = std::chrono::duration_cast<milliseconds>(kFar);
   const std::uint64_t times = 2 * (std::uint64_t{ack.retries} + 1);
@@ -58,7 +59,8 @@ std::optional<Instant> Outgoing::earliest() const {
 }
 
 void Outgoing::add_deadline(Deadline deadline) {
-  // Most requests end before they are due: as many are forgotten as have gathered since the last time.
+  // Most requests end before their deadline. Once enough of these have accumulated, they are
+  // removed.
   if (deadlines_.size() >= 2 * in_flight_ + kFirstSlots) {
     const auto is_over = [this](const Deadline& held) { return !is_due_at(held); };
     deadlines_.erase(std::remove_if(deadlines_.begin(), deadlines_.end(), is_over),
@@ -69,13 +71,13 @@ void Outgoing::add_deadline(Deadline deadline) {
   std::push_heap(deadlines_.begin(), deadlines_.end(), std::greater<>());
 }
 
-/// Makes room so that at most half of the slots are taken: a free one is never far away.
+/// Grows until at most half of the slots are occupied, so that a free one is always near.
 void Outgoing::grow() {
   if ((in_flight_ + 1) * 2 <= slots_.size()) return;
   std::vector<std::optional<Entry>> old(std::max(slots_.size() * 2, kFirstSlots));
   old.swap(slots_);
   for (auto& entry : old) {
-    // Ids that differ in few low bits differ in more of them.
+    // Ids that differ in a few low bits also differ in more of them.
     if (entry) slots_[slot_of(entry->frame.id)] = entry;
   }
 }
@@ -155,7 +157,7 @@ bool Seen::contains(FrameId frame, const std::optional<Sum>& digest, Instant now
   };
   const auto found = std::find_if(window_.rbegin(), window_.rend(), same);
   if (found == window_.rend()) return false;
-  // It may come again for as long as ever: its age counts from now.
+  // The report may be repeated for the full time again, so its age restarts.
   Entry entry = *found;
   window_.erase(std::next(found).base());
   entry.connection = connection_;

@@ -13,7 +13,7 @@ Refusal unknown_command(const Protocol& protocol) { return Refusal(protocol.resu
 
 Result<std::string, Refusal> serve_raw(const Protocol& protocol, Context context,
                                        std::string_view text, const RawHandle& handle) {
-  // Of what nobody knows, not even the envelope has to read.
+  // For an unknown command, even the envelope may be unreadable.
   if (const auto envelope = read_envelope(protocol.request_envelope, text, context.allowance)) {
     if (auto old = detail::expired(protocol, context.max_age, *envelope)) return *std::move(old);
     context.time_ms = envelope->time_ms;
@@ -58,7 +58,7 @@ std::optional<Refusal> expired(const Protocol& protocol,
                                std::optional<std::chrono::milliseconds> max_age,
                                const Envelope& envelope) {
   if (!max_age || !envelope.time_ms) return std::nullopt;
-  // The app chooses its time: no sum may overflow.
+  // The app chooses the time, so no sum may overflow.
   if (*envelope.time_ms >= unix_ms() - bounded(*max_age).count()) return std::nullopt;
   return Refusal(protocol.results.expired);
 }

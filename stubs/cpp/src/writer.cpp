@@ -63,7 +63,7 @@ void Writer::unsigned_integer(std::uint64_t value) {
 
 namespace {
 
-/// What `float_text` says.
+/// Appends the result of `float_text`.
 template <class Float>
 void append_float(std::string& out, Float value) {
   std::array<char, 64> room{};

@@ -1,4 +1,4 @@
-// The bodies at the edges of JSON (`bodies.json`), read as messages of one key and written again.
+// Bodies at the limits of JSON (`bodies.json`), read as messages with one key and written again.
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -80,8 +80,8 @@ std::optional<Outcome> transcode_as(const std::string& type, const std::string& 
   return std::nullopt;
 }
 
-/// Whether the texts are the same; the numbers of floats and the escapes of strings may be spelled
-/// otherwise.
+/// Returns `true` if the texts are equal. Floats and the escapes of strings may have another
+/// spelling.
 bool is_as_written(const std::string& type, const std::string& found, const std::string& wanted) {
   if (found == wanted) return true;
   const bool may_differ = type == "f32" || type == "f64" || type == "string";
@@ -118,7 +118,7 @@ int main(int count, char** arguments) {
       tally.end_case("bodies");
     }
   }
-  // People read of a float what a receiver does, whatever the stream was told before.
+  // A printed float parses to the same number, whatever the settings of the stream.
   tally.check(printed(12345.6789) == "OneKey{value: 12345.6789}", printed(12345.6789));
   tally.check(printed(0.1F) == "OneKey{value: 0.1}", printed(0.1F));
   tally.check(printed(5.0) == "OneKey{value: 5.0}", printed(5.0));
@@ -128,7 +128,7 @@ int main(int count, char** arguments) {
     const std::string name = std::isnan(none) ? "nan" : none > 0 ? "inf" : "-inf";
     tally.check(text == "OneKey{value: [" + name + ", 0.5]}", text);
   }
-  // Unknown keys and JSON are sent as they came, whatever they look like.
+  // Unknown keys and JSON are sent exactly as received.
   for (const std::string& odd :
        {std::string(
             R"({"value":{ "a" : [ 1.50, 1E+2 , "\u00e9\/" ] , "a":null},"k\u0065y":{"b" : -0.0 },)"
@@ -144,7 +144,7 @@ int main(int count, char** arguments) {
   tally.check(fc_runtime::to_json(kept).value_or("") == R"({"k\u0065y":3,"other":"\/"})", "is set");
   kept.extra.erase("key");
   tally.check(fc_runtime::to_json(kept).value_or("") == R"({"other":"\/"})", "and taken out");
-  // Values are counted while they are read: the rest of the text costs nothing.
+  // Values are counted during reading: the rest of the text costs nothing.
   std::string lists = "{";
   for (int at = 0; at < 100'000; ++at) lists += R"("a":[[]],)";
   fc_runtime::Allowance few;
@@ -152,7 +152,7 @@ int main(int count, char** arguments) {
   const auto many = fc_runtime::from_json<OneKey<int>>(lists + R"("a":0})", few);
   tally.check(!many && many.error().name() == "too_many_values" && many.error().offset < 20'000,
               "a hundred thousand lists");
-  // Nesting far beyond the stack is refused by its depth.
+  // Nesting far beyond the stack is refused by the depth limit.
   const auto deep =
       fc_runtime::from_json<OneKey<fc_runtime::Json>>("{\"value\":" + std::string(100'000, '['));
   tally.check(!deep && deep.error().name() == "too_deep", "a hundred thousand brackets");

@@ -1,4 +1,4 @@
-// The names of errors are those of `errors.json`, which all implementations share.
+// The names of errors equal those in `errors.json`, which all implementations share.
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,7 +14,7 @@ using fc_runtime::CallErrorKind;
 using fc_runtime::FrameErrorKind;
 using Names = std::set<std::string>;
 
-/// The names of an enum's values, up to its last.
+/// Returns the names of the values of an enum, up to `last`.
 template <class Kind>
 Names names(Kind last) {
   Names names;
@@ -41,7 +41,7 @@ int main(int count, char** arguments) {
       const std::string name = error.at("name");
       listed.insert(name);
       tally.check(given.count(name) == 1, "no error has the name " + name);
-      // A limit of one's own is not asked of others.
+      // Other implementations need not have a limit that is specific to this one.
       tally.end_case(error.value("own_limit", false) ? "" : where + "_errors");
     }
     tally.check(given == listed, "the names of errors of a " + where);

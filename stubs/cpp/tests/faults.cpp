@@ -1,4 +1,4 @@
-// Of several faults in one body, that of `faults.json` is named, with the place where it is.
+// Of several errors in one body, the one in `faults.json` is reported, with its path.
 #include <fstream>
 #include <nlohmann/json.hpp>
 

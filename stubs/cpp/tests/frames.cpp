@@ -1,4 +1,4 @@
-// Every golden frame of the vectors is read and written again; the body with its envelope alone.
+// Every golden frame is read and written again, with only the envelope of its body.
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -24,10 +24,10 @@ const fc_runtime::Protocol& protocol() {
   return fc;
 }
 
-/// Names of faults that need no type to be found.
+/// Names of errors that need no type.
 const std::set<std::string> kOfAnyBody = {"not_utf8", "bad_json", "not_an_object", "too_deep"};
 
-/// What is read of bytes that come `step` at a time: a frame and its data, or the name of the error.
+/// The outcome of reading bytes in steps of `step`: a frame and its data, or the name of the error.
 struct Read {
   std::optional<fc_runtime::Header> header;
   std::string data;
@@ -57,7 +57,7 @@ const std::vector<fc_runtime::EnvelopeKey>& envelope_of(const json& vector) {
   return is_request ? protocol().request_envelope : protocol().response_envelope;
 }
 
-/// What is wrong with the body that a frame of no stream has, as far as that takes no type.
+/// Returns the error in the body of a frame that is not a stream, as far as it needs no type.
 std::string body_error(const json& vector, const std::string& text) {
   const auto envelope =
       fc_runtime::read_envelope(envelope_of(vector), text, protocol().defaults.limits.json());
@@ -90,7 +90,7 @@ void accepted(tests::Tally& tally, const std::string& file, const json& vector) 
     Encoder encoder(protocol());
     tally.check(bool(encoder.append(again, frame.header->frame, frame.data)), name);
     if (vector.at("case") == "plain") tally.check(again == bytes, name + ", written again");
-    // Compressed or not, it is the same to who reads it.
+    // A reader gets the same data, compressed or not.
     encoder.set_gzip(fc_runtime::Gzip{0, 9});
     std::string packed;
     tally.check(bool(encoder.append(packed, frame.header->frame, frame.data)), name);
@@ -99,7 +99,7 @@ void accepted(tests::Tally& tally, const std::string& file, const json& vector) 
   }
 }
 
-/// Whether it could be judged without types.
+/// Returns `true` if the vector can be judged without types.
 bool rejected(tests::Tally& tally, const std::string& file, const json& vector) {
   const std::string name = file + " " + vector.at("name").get<std::string>();
   const std::string wanted = vector.at("error");
@@ -116,7 +116,8 @@ bool rejected(tests::Tally& tally, const std::string& file, const json& vector) 
   return judged;
 }
 
-/// What the vectors do not have: ratio, searching, several frames, a long one in pieces.
+/// Cases without vectors: the compression ratio, searches, several frames, and a long one in
+/// pieces.
 void others(tests::Tally& tally) {
   const fc_runtime::FrameId id{false, 1, 7, 9};
   Encoder encoder(protocol());
@@ -146,14 +147,14 @@ void others(tests::Tally& tally) {
   const auto refused = encoder.append(too_long, id, "{}");
   tally.check(!refused && refused.error().name() == "frame_too_long" && too_long == "before",
               "too long to be sent");
-  // A length that is only announced costs nothing.
+  // A length that is only announced takes no memory.
   Decoder lied_to(protocol());
   std::string head = bomb.substr(0, 35);
   head[12] = '\x7F';
   lied_to.push(head);
   const auto waiting = lied_to.next();
   tally.check(waiting && !*waiting && lied_to.capacity() < 4096, "an announced length");
-  // RFC 1321, and a length at each edge of a block.
+  // RFC 1321, and lengths around the size of a block.
   using fc_runtime::digest_of;
   using fc_runtime::DigestAlgorithm;
   const auto sum = [](DigestAlgorithm algorithm, std::string_view text) {
@@ -188,7 +189,7 @@ int main(int count, char** arguments) {
     std::ifstream file(entry.path());
     const json vectors = json::parse(file);
     const std::string name = entry.path().stem().string();
-    // Those of operations are cases of the test of messages.
+    // Vectors of operations are cases of the message test.
     const std::string kind = name == "frames" ? name : "";
     for (const json& vector : vectors.at("accepted")) {
       if (!vector.contains("frame")) continue;

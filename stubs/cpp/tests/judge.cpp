@@ -1,6 +1,8 @@
-// Says of each frame, one in hex on a line, what this package makes of it, as a list in JSON on a line.
+// Reads frames, one in hex per line, and prints the verdict of this package as one JSON list per
+// line.
 //
-// Decoders in several languages are compared by it: `fc-reflect/tests/it/judges.rs` says what the lists are.
+// The judges of several languages are compared. `fc-reflect/tests/it/judges.rs` describes the
+// lists.
 #include <iostream>
 #include <string>
 
@@ -16,8 +18,8 @@ std::string refused(std::string_view name, std::string_view path) {
   return R"(["refused",)" + Json::string(name).text() + "," + Json::string(path).text() + "]";
 }
 
-/// What its operation's type makes of a frame's data; of one that has no type, whether it is a message
-/// of keys that nobody knows.
+/// Transcodes the data of a frame as the type of its operation. Without a type, checks that it is
+/// an object with any keys.
 tests::Transcoded transcode(const fc_runtime::OperationInfo* operation, bool is_request,
                             std::string_view data) {
   if (operation != nullptr) return tests::transcode(*operation, is_request, data);

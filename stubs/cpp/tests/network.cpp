@@ -40,7 +40,7 @@ using tests::Lines;
 using tests::Nothing;
 using tests::Tally;
 
-/// No test waits so long; one that does has failed.
+/// Time after which a test has failed. No passing test waits so long.
 constexpr seconds kPatience{20};
 
 const fc_runtime::Protocol& protocol() {
@@ -48,10 +48,10 @@ const fc_runtime::Protocol& protocol() {
   return toy;
 }
 
-/// A command that the protocol does not know, and the robot does.
+/// A command that the protocol does not define and the robot handles.
 constexpr std::uint16_t kRaw = 901;
 
-/// A door that handlers wait at.
+/// A gate at which handlers wait.
 class Door {
  public:
   void open() {
@@ -65,7 +65,7 @@ class Door {
     changed_.notify_all();
     changed_.wait_for(held, kPatience, [this] { return is_open_; });
   }
-  /// Waits until so many have come to the door.
+  /// Waits until `count` handlers have arrived at the door.
   bool has(int count) {
     std::unique_lock held(mutex_);
     return changed_.wait_for(held, kPatience, [&] { return waiting_ >= count; });
@@ -78,7 +78,7 @@ class Door {
   int waiting_ = 0;
 };
 
-/// Says what it hears; what it is to move waits at the door, unless it is to move nowhere.
+/// Echoes requests. Commands that move wait at the door, except those that go nowhere.
 fc_runtime::Service service(Door* door = nullptr) {
   return [door](const Context& context, std::string_view text) -> Handled {
     if (context.code == tests::kEcho) {
@@ -148,7 +148,7 @@ void calls(Tally& tally) {
   const auto unknown = app.call_body(900, "{}");
   tally.check(unknown && unknown->find("2001") != std::string::npos, "an unknown command");
 
-  // Many at once, from several threads, each with its own answer.
+  // Many calls at once from several threads. Each gets its own response.
   std::atomic<int> right{0};
   std::vector<std::thread> callers;
   for (int caller = 0; caller < 8; ++caller) {
@@ -163,14 +163,14 @@ void calls(Tally& tally) {
   for (auto& caller : callers) caller.join();
   tally.check(right == 400, "each caller has its own answers");
 
-  // Callbacks run on the connection's thread, where nothing may wait.
+  // Callbacks run on the thread of the connection and must not wait there.
   std::promise<std::string> inner;
   app.call_async(Echo{"a", {}}, [&](const Result<Echo, fc_runtime::CallError>&) {
     const auto waits = app.call(Echo{"b", {}});
     inner.set_value(waits ? "success" : std::string(waits.error().name()));
   });
   tally.check(inner.get_future().get() == "busy", "a callback does not wait for itself");
-  // A callback may hold the last of a connection, which then ends on its own thread.
+  // A callback may hold the last copy of a connection, which then ends on its own thread.
   std::promise<void> over;
   auto last = std::make_shared<Connection>(connected(server));
   const auto* held = last.get();
@@ -226,12 +226,12 @@ void streams(Tally& tally) {
   tally.check(bool(app.call(Echo{"", {}})), "it is connected");
   const auto data = app.data();
   tally.check(bool(data.connected()), "the data port");
-  // Before this is first asked they would be dropped.
+  // Frames are dropped until the first call of `next_stream`.
   tally.check(!server.next_stream(milliseconds(0)), "nothing yet");
   for (std::uint32_t at = 0; at < 50; ++at) {
     tally.check(bool(data.send(7, at, "hello")), "the app sends");
     if (at % 10 < 9) continue;
-    // Ten at a time, which is more than there is room for: the app is not read meanwhile.
+    // Ten frames do not fit: the server stops reading from the app in the meantime.
     for (std::uint32_t left = 10; left > 0; --left) {
       const auto stream = server.next_stream(kPatience);
       tally.check(stream && stream->frame.code == 7 && stream->frame.id == at + 1 - left &&
@@ -263,14 +263,14 @@ void streams(Tally& tally) {
   tally.check(!whose && name(whose.error().kind) == "ambiguous", "whose it is cannot be told");
 }
 
-/// Each subscription has frames of its own code, the latest of them.
+/// Each subscription receives the latest frames with its code.
 void subscriptions(Tally& tally) {
   const auto server = *Server::bind(protocol(), service(), free_ports());
   const Connection app = connected(server);
   tally.check(bool(app.call(Echo{"", {}})), "it is connected");
   const auto data = app.data();
   tally.check(bool(data.connected()), "the data port");
-  // The app is connected before the robot has taken the connection: what comes over it shows that it has.
+  // The app is connected before the robot has accepted. A received frame shows that it has.
   tally.check(!server.next_stream(milliseconds(0)), "nothing yet");
   tally.check(data.send(7, 0, "hello") && server.next_stream(kPatience), "the robot gets it");
   const auto pictures = data.subscribe(9);
@@ -281,7 +281,7 @@ void subscriptions(Tally& tally) {
     tally.check(sent && *sent == 1, "the robot sends");
   };
   for (std::uint32_t at = 0; at < 6; ++at) send(9, at);
-  // Nobody has subscribed to these: they do not keep the others from coming.
+  // Frames without a subscription do not block the others.
   for (std::uint32_t at = 0; at < 6; ++at) send(11, at);
   send(10, 1);
   const auto end = last.next(kPatience);
@@ -293,7 +293,7 @@ void subscriptions(Tally& tally) {
   }
   const auto none = pictures.next(milliseconds(0));
   tally.check(!none && name(none.error().kind) == "timeout", "and then nothing");
-  // What nobody has subscribed to goes to who asks for all.
+  // Frames without a subscription go to `next`.
   tally.check(!data.next(milliseconds(0)), "the others were dropped");
   send(11, 7);
   const auto other = data.next(kPatience);
@@ -304,7 +304,7 @@ void subscriptions(Tally& tally) {
   tally.check(!closed && name(closed.error().kind) == "closed", "a subscription ends");
 }
 
-/// Who may connect, and who may call what.
+/// Allowed networks and commands.
 void allowed(Tally& tally) {
   ServerConfig config = free_ports();
   config.allow = {{"10.0.0.0/8", {}}};
@@ -333,7 +333,7 @@ void allowed(Tally& tally) {
   }
 }
 
-/// A robot that goes down in the middle, and comes back.
+/// A robot that goes down during a call and comes back.
 void losses(Tally& tally) {
   const tests::Listener robot;
   ClientConfig config = to(robot.port());
@@ -355,14 +355,14 @@ void losses(Tally& tally) {
   second.send({true, 1, tests::kEcho, 500}, R"({"resultCode":1001,"text":"read"})");
   const auto answer = read.get();
   tally.check(answer && answer->text == "read", "and answered");
-  // What is no frame ends the connection, and another is made.
+  // Invalid bytes end the connection, and the client reconnects.
   second.socket().send("HTTP/1.1 200 OK\r\n\r\n");
   Frames third(robot.accept(), protocol());
   auto states = app.states();
   auto state = app.state();
   while (state.connects < 3) state = states.next(kPatience).value_or(state);
   tally.check(state.connects == 3, "a third connection");
-  // An answer that is none, a broken one, one that nests without end, and one that is right.
+  // A response of the wrong type, a broken one, one nested without end, and a correct one.
   for (const char* broken :
        {R"({"resultCode":1001})", "[1]", "", R"({"resultCode":"x","text":1})"}) {
     auto call = std::async(std::launch::async, [&] { return app.call(Echo{"x", {}}); });
@@ -388,7 +388,7 @@ void losses(Tally& tally) {
   tally.check(!outcome && outcome.error().name() == "frame" &&
                   outcome.error().frame->name() == "bad_digest",
               "a broken frame");
-  // It stops in the middle of a frame.
+  // The robot stops in the middle of a frame.
   const auto cancelled = app.call_async(
       Echo{"x", {}}, [&](const auto&) { tally.check(false, "a cancelled call is not told of"); });
   tally.check(bool(third.receive()), "a call is sent");
@@ -416,7 +416,7 @@ void stalls(Tally& tally) {
   tally.check(!unreachable && unreachable.error().kind == LossKind::Unreachable, "nobody there");
 }
 
-/// Apps that no app is.
+/// Misbehaving apps.
 void hostile(Tally& tally) {
   ServerConfig config = free_ports();
   config.header_timeout = milliseconds(100);
@@ -467,7 +467,7 @@ void hostile(Tally& tally) {
   tally.check(server.counters().connections_refused == 1, "which is counted");
 }
 
-/// Connections over which nothing comes do not keep apps out.
+/// Silent connections do not keep apps out.
 void silent(Tally& tally) {
   ServerConfig few = free_ports();
   few.limits = protocol().defaults.limits;
@@ -481,7 +481,7 @@ void silent(Tally& tally) {
       commands.push_back(tests::dial(server.command_port()));
       streams.push_back(tests::dial(server.data_port()));
     }
-    // Before its app has sent anything.
+    // The app has not sent anything yet.
     const tests::Socket early = tests::dial(server.data_port());
     tally.check(streams.front().receive().empty(), "the oldest silent data connection gives way");
     const Connection app = connected(server);
@@ -493,10 +493,10 @@ void silent(Tally& tally) {
   }
 }
 
-/// An exception that is no `std::exception`.
+/// An exception that does not derive from `std::exception`.
 struct Odd {};
 
-/// Throws as the request asks.
+/// Throws as requested.
 Handled throwing(const Context& context, std::string_view text) {
   return fc_runtime::serve<Echo, Echo>(
       protocol(), context, text, [](const Context&, const Echo& request) -> Result<Echo, Refusal> {
@@ -563,7 +563,7 @@ void callbacks_throw(Tally& tally) {
   ServerConfig config = free_ports();
   Lines lines;
   const fc_runtime::Log log = lines.log();
-  // A log may fail as well.
+  // The log function may throw as well.
   config.log = [log](fc_runtime::LogLevel level, std::string_view line) {
     log(level, line);
     throw Odd();
@@ -584,7 +584,7 @@ void callbacks_throw(Tally& tally) {
   tally.check(!lines.has_now("secret"), "no contents of a body");
 }
 
-/// A flood of errors is none in the log.
+/// A flood of errors does not flood the log.
 void log_flood(Tally& tally) {
   std::atomic<int> lines{0};
   ServerConfig config = free_ports();
@@ -598,7 +598,7 @@ void log_flood(Tally& tally) {
   tally.check(lines == 5 && server.counters().handlers_panicked == 20, "five lines for 20 errors");
 }
 
-/// Apps cannot make a robot hold more than it may.
+/// Apps cannot make a robot exceed its memory limit.
 void memory(Tally& tally) {
   ServerConfig config = free_ports();
   config.memory = std::size_t{256} << 10U;
@@ -619,7 +619,7 @@ void memory(Tally& tally) {
   tally.check(bool(app.call(Echo{"hello", {}})), "others go on");
 }
 
-/// Requests of apps that have gone do not begin.
+/// Requests of disconnected apps do not begin.
 void gone(Tally& tally) {
   Door door;
   std::atomic<int> begun{0};
@@ -727,7 +727,7 @@ void settings(Tally& tally) {
     const auto call = Connection::connect_lazy(protocol(), config).call(Echo{"hello", {}});
     tally.check(!call && call.error().name() == "closed", name + ", connected lazily");
   }
-  // For ever is as long as the clock goes.
+  // The longest time is limited by the clock.
   ClientConfig patient = to(server.command_port());
   patient.connect_timeout = patient.stall_timeout = milliseconds::max();
   patient.call_timeout = milliseconds::max();
@@ -763,7 +763,7 @@ void shutdown(Tally& tally) {
   const auto late = app.call(Echo{"late", {}});
   tally.check(!late, "and nothing more");
 
-  // A handler that does not end does not hold the end up.
+  // A handler that does not end does not block the shutdown.
   Door closed;
   const auto stubborn = *Server::bind(protocol(), service(&closed), free_ports());
   ClientConfig other = to(stubborn.command_port());

@@ -1,4 +1,4 @@
-// Patterns match what `conformance/patterns.json` says, as in all languages.
+// Patterns match as specified in `conformance/patterns.json`, in all languages.
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,7 +22,7 @@ int main(int count, char** arguments) {
       }
     }
   }
-  // No text is too long.
+  // Long texts are no problem.
   const std::string text(1'000'000, 'a');
   tally.check(fc_runtime::detail::matches(text, "(?:a|b)*"), "a long text");
   tally.check(!fc_runtime::detail::matches(text, "(?:a+)+b"),

@@ -1,5 +1,5 @@
-// The scripts of level `peer` against a whole client and a whole robot, with frames at their other
-// end and a clock that the script holds.
+// Runs the scripts of level `peer` against a whole client and a whole robot. The test plays the
+// other end with frames and controls the clock.
 #include <cstdint>
 #include <map>
 #include <stdexcept>
@@ -48,7 +48,7 @@ class Wire {
  public:
   void connect() { decoder_ = fc_runtime::Decoder(protocol()); }
 
-  /// A request of the peer under test. Its number is in its body, so that it is known again.
+  /// Sends a request to the peer under test, with its number in the body to recognize it.
   std::size_t request(const json& open) {
     requests_.push_back({open.at("as"), open.at("code"), std::nullopt});
     return requests_.size() - 1;
@@ -63,7 +63,7 @@ class Wire {
     throw Broken("there is no request " + name);
   }
 
-  /// The bytes of a frame that arrives.
+  /// Returns the bytes of an incoming frame.
   std::string frame(const json& said) {
     FrameId frame;
     if (said.contains("answer_to")) {
@@ -90,7 +90,7 @@ class Wire {
     return bytes;
   }
 
-  /// The name of the last frame that has arrived with this code, id and body.
+  /// Returns the name of the last received frame with this code, id and body.
   [[nodiscard]] std::string arrived(std::uint16_t code, std::uint32_t id,
                                     const json& body = nullptr) const {
     for (std::size_t at = arrived_.size(); at > 0; --at) {
@@ -102,7 +102,7 @@ class Wire {
     throw Broken("nothing has arrived with id " + std::to_string(id));
   }
 
-  /// What the peer under test has sent.
+  /// Reads the bytes that the peer under test has sent.
   void sent(const std::string& bytes, Got& got) {
     decoder_.push(bytes);
     for (;;) {
@@ -301,7 +301,7 @@ class Robot {
 
   Got& look(Instant now) {
     core_.advance(now);
-    // What is handled may be answered, and what is answered makes room for more.
+    // Handled requests may be responded to, and responses make room for more.
     for (int round = 0; round < 3; ++round) {
       begin(now);
       core_.settle();
@@ -340,7 +340,7 @@ class Robot {
     id_ = core_.connect(now).value();
   }
 
-  /// Handlers begin with requests that read, and wait until the script ends them.
+  /// Starts handlers of read requests. They wait until the script ends them.
   void begin(Instant now) {
     std::vector<fc_runtime::Request> begun;
     begun.swap(begun_);
@@ -409,8 +409,8 @@ Failure run(const json& script) {
   return script.at("given").at("side") == "app" ? steps<App>(script) : steps<Robot>(script);
 }
 
-/// What no script has: an app that was silent for long is not slow when it gets a report at last, and is
-/// given up if it does not read that.
+/// A case without a script. An app that was silent for long is not slow when it finally gets a
+/// report. It times out if it does not read the report.
 void patience(tests::Tally& tally) {
   fc_runtime::RobotSettings settings;
   settings.limits = protocol().defaults.limits;
@@ -431,7 +431,7 @@ void patience(tests::Tally& tally) {
   tally.check(core.is_done(id) && core.counters().connections_timed_out == 1, "now it is");
 }
 
-/// An app that sends requests and reads no responses is not read either.
+/// The robot stops reading from an app that sends requests and does not read responses.
 void back_pressure(tests::Tally& tally) {
   fc_runtime::RobotSettings settings;
   settings.limits = protocol().defaults.limits;

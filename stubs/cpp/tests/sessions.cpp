@@ -1,4 +1,4 @@
-// The scripts of level `session` against the session.
+// Runs the scripts of level `session` against the session.
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -25,7 +25,7 @@ const fc_runtime::Protocol& protocol() {
   return toy;
 }
 
-/// The protocol with as many bits for an id as a script asks for.
+/// Returns the protocol with the id length of the script.
 const fc_runtime::Protocol& protocol(const json& given) {
   static const fc_runtime::Protocol of_short_ids = tests::toy_protocol_of_short_ids();
   return given.value("id_bits", 32) == 16 ? of_short_ids : protocol();
@@ -167,7 +167,7 @@ class Run {
   }
 
   void due() {
-    // More is not due at once, however far the clock has gone.
+    // No more can be due at once, however far the clock has advanced.
     for (std::size_t most = requests_.size() * 2 + 1; most > 0; --most) {
       const auto due = session_.due(now_);
       if (!due) return;
@@ -190,7 +190,7 @@ class Run {
     for (const auto& [frame, token] : ended) got_.push({{"ended", end(token, frame)}});
   }
 
-  /// Notes that a request has ended: each does so once, and with its own frame.
+  /// Notes the end of a request. Each ends exactly once, with its own frame.
   std::string end(fc_runtime::Token token, FrameId frame) {
     Request& request = requests_.at(token);
     frame.response = false;
@@ -218,7 +218,7 @@ class Run {
     }
   }
 
-  /// The last request of this name.
+  /// Returns the last request with this name.
   [[nodiscard]] std::size_t find(const std::string& name) const {
     for (std::size_t at = requests_.size(); at > 0; --at) {
       if (requests_[at - 1].name == name) return at - 1;
@@ -232,7 +232,7 @@ class Run {
   Session session_;
   Instant now_ = Instant() + std::chrono::hours(1);
   std::vector<Request> requests_;
-  /// Ids of those in flight.
+  /// Ids in flight.
   std::set<std::uint32_t> ids_;
   std::map<std::string, Arrived> arrived_;
   tests::Got got_;

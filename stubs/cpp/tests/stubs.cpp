@@ -1,4 +1,4 @@
-// The generated stubs over TCP, and what messages say of themselves.
+// The generated stubs over TCP, and the facts of messages.
 #include <condition_variable>
 #include <future>
 #include <mutex>
@@ -19,7 +19,7 @@ using tests::Tally;
 
 constexpr seconds kPatience{20};
 
-/// A robot that can be asked its serial number, and drives to its dock.
+/// A robot that returns its serial number and drives to its dock.
 class Docking : public fc::PartialRobot {
  public:
   fc_runtime::Replied<fc::GetRobotSnResponse> get_robot_sn(
@@ -97,7 +97,7 @@ void partial(Tally& tally) {
   tally.check(!second && second.error().refusal->code == 2003, "and is busy");
 }
 
-/// Every command of the spec against a robot that knows examples, and against one that moves nothing.
+/// Calls every command of a robot that responds with examples, and of one that moves nothing.
 void examples(Tally& tally) {
   const auto pretending = robot_of(std::make_shared<fc::ExampleRobot>(true));
   const auto client = app_of(pretending);
@@ -152,7 +152,7 @@ void follow(Tally& tally) {
     tally.check(next && next->kind == Kind::Going && next->report->data.recharge_status == status,
                 "it goes on");
   }
-  // Back to the beginning: handed on all the same, and counted.
+  // A report back at the first state is handed on and counted.
   static_cast<void>(reporter.recharge_progress(progress(fc::RechargeStatus::Navigating, none)));
   const auto back = following->next(kPatience);
   tally.check(
@@ -167,7 +167,7 @@ void follow(Tally& tally) {
   tally.check(!refused && refused.error().name() == "refused", "a refusal is not followed");
 }
 
-/// A robot that answers without the required fields.
+/// A robot that responds without the required fields.
 class Forgetful : public fc::PartialRobot {
  public:
   fc_runtime::Replied<fc::GetRobotSnResponse> get_robot_sn(
@@ -176,7 +176,7 @@ class Forgetful : public fc::PartialRobot {
   }
 };
 
-/// A required field that was left out is not sent as 0 or "".
+/// An unset required field is not sent as 0 or "".
 void required(Tally& tally) {
   const auto refused = [&tally](const auto& message, const std::string& path) {
     const auto text = fc_runtime::to_json(message);
@@ -248,7 +248,7 @@ void messages(Tally& tally) {
               "what follows");
   tally.check(!fc::cell_layouts().empty() && fc::cell_layouts().front() != fc::CellLayout{},
               "a table has rows");
-  // Whatever a type is, its example is one of it, and keeps its own conditions.
+  // The example of each type can be read as the type and satisfies its conditions.
   for (const auto& operation : fc::protocol().operations) {
     for (const auto& type : {operation.request, operation.response}) {
       if (!type) continue;

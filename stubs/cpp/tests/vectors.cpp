@@ -1,4 +1,4 @@
-// Every golden frame of the vectors is read as its typed message and written again, or refused.
+// Every golden frame is read as its typed message and written again, or refused.
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What is read of a vector's bytes: the data of its frame, or the name of the error.
+/// The outcome of reading a vector: the data of its frame, or the name of the error.
 struct Read {
   std::string data;
   std::string error;
@@ -31,7 +31,7 @@ Read read_frame(const json& vector) {
   return {std::string((*next)->data), ""};
 }
 
-/// The body that is written of the typed message behind a body; or the name of the error.
+/// Reads a body as its typed message and writes it again, or returns the name of the error.
 Read transcode(const json& vector, const fc_runtime::OperationInfo& operation,
                const std::string& text) {
   auto again = tests::transcode(operation, vector.at("direction") == "request", text);

@@ -1,4 +1,4 @@
-// Threads that run handlers: each handler gets one, as long as there are any.
+// The threads of handlers: each handler gets one, up to the limit.
 #include "../src/net/workers.hpp"
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace {
 
 using tests::Tally;
 
-/// No test waits so long; one that does has failed.
+/// Time after which a test has failed. No passing test waits so long.
 constexpr std::chrono::seconds kPatience{20};
 
-/// Where so many meet: nobody leaves before all are there.
+/// A barrier for a number of threads.
 class Meeting {
  public:
   explicit Meeting(int all) : missing_(all) {}
@@ -47,9 +47,9 @@ constexpr int kThreads = 8;
 
 void all_at_once(Tally& tally) {
   fc_runtime::detail::Workers workers(kThreads);
-  // Threads that have to be started first, and then threads that have been idle; one by one, and in a heap.
+  // New threads first, then idle ones; one by one, and many at once.
   for (const int heap : {kThreads, kThreads, 1, 3, kThreads}) {
-    // Whoever has met may still be leaving when the others have gone on.
+    // Some threads may still leave the barrier when the next round begins.
     const auto meeting = std::make_shared<Meeting>(heap);
     for (int one = 0; one < heap; ++one) workers.run([meeting] { meeting->join(); });
     tally.check(meeting->has_met(), "work that waits for other work gets a thread each");
@@ -66,7 +66,7 @@ void in_turn(Tally& tally) {
   tally.check(second.has_met(), "and the others when these are free");
 }
 
-/// Settled work does not run, and does not pile up.
+/// Settled work does not run, and does not accumulate.
 void settled(Tally& tally) {
   Meeting first(2);
   std::atomic<int> done{0};

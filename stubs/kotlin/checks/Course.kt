@@ -24,7 +24,7 @@ import odd_line.Operations
 import odd_line.StrType
 import odd_line.service
 
-/** Uses a package whose names mean something elsewhere: every command is called, and what is odd is looked at. */
+/** Uses a package with unusual names: calls every command and checks the odd types. */
 fun main(): Unit = runBlocking {
     val server = Server.bind(
         OddLine,
@@ -56,7 +56,7 @@ fun main(): Unit = runBlocking {
     println("${OddLine.commands.size} commands were answered")
 }
 
-/** What is sent is checked. */
+/** Checks a message before it is sent. */
 private fun DriveRequest.checkedIn(): DriveRequest = also { it.check() }
 
 private suspend fun <Q : Message, A : Message> call(client: Client, command: Command<Q, A>) {

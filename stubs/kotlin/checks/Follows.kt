@@ -10,13 +10,13 @@ import meter.PartialRobot
 import meter.ReadPowerRequest
 import meter.ReadPowerResponse
 
-/** A robot that is not complete: what the spec gains is no fault here. */
+/** A partial robot. An addition to the spec is not an error here. */
 class Partly : PartialRobot {
     override suspend fun readPower(context: Context, request: ReadPowerRequest): ReadPowerResponse =
         ReadPowerResponse { kilo(1.5).shut(true) }
 }
 
-/** An app that uses what the spec has gained. */
+/** An app that uses the addition to the spec. */
 suspend fun count(client: Client): CountPulsesResponse {
     check(Operations.countPulses.effect == Effect.READ)
     return client.countPulses(CountPulsesRequest {})

@@ -8,7 +8,7 @@ import odd_line.Going;
 import odd_line.Tables;
 import odd_line.WhenResponse;
 
-/** The same package from Java: builders, futures, enums that Java can make. */
+/** The same package from Java: builders, futures, enums that Java can create. */
 final class JavaCourse {
     private JavaCourse() {}
 

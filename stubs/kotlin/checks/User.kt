@@ -13,7 +13,7 @@ import meter.SetTariffResponse
 import meter.WatchLoadRequest
 import meter.WatchLoadResponse
 
-/** A complete robot, and an app: both have to follow the spec. */
+/** A complete robot and an app. Both must follow the spec. */
 class Mine : Robot {
     override suspend fun readPower(context: Context, request: ReadPowerRequest): ReadPowerResponse =
         ReadPowerResponse {

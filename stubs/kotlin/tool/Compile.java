@@ -4,13 +4,16 @@ import java.nio.file.Path;
 import org.jetbrains.kotlin.cli.common.ExitCode;
 import org.jetbrains.kotlin.cli.jvm.K2JVMCompiler;
 
-/** Runs the Kotlin compiler with each of some files of arguments, one to a line: a compiler that is warm takes a third of the time. */
+/**
+ * Runs the Kotlin compiler once per file of arguments, one argument per line. A warm compiler takes a third of the
+ * time.
+ */
 public final class Compile {
     private Compile() {}
 
     /**
-     * Compiles, and fails with the first that fails. What stands behind a `!` has to fail; what the compiler says of it goes to
-     * a file beside it, `FILE.said`.
+     * Compiles each file, and stops at the first failure. A file after `!` must fail; the output of the compiler is
+     * written next to it as `FILE.said`.
      */
     public static void main(String[] files) throws Exception {
         for (String file : files) {

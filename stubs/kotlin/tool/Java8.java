@@ -9,7 +9,10 @@ import java.util.zip.ZipEntry;
 import java.util.zip.ZipFile;
 import java.util.zip.ZipOutputStream;
 
-/** Makes a jar of the API of Java 8, which every JDK has for its compiler: old ProGuard cannot read the classes of a new JDK. */
+/**
+ * Creates a jar of the API of Java 8, which every JDK contains for its compiler. Old ProGuard cannot read the classes
+ * of a new JDK.
+ */
 public final class Java8 {
     private Java8() {}
 

@@ -1,4 +1,4 @@
-// A report of a code that is known only once it is there, as the type that has this code.
+// Reads a report whose code is known only at run time, as the type with this code.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace fc_runtime {
 
 namespace detail {
 
-/// Reads a report as a type, if it has its code. Says whether no other type needs to be tried.
+/// Reads a report as `Message` if the codes match. Returns `true` if no other type needs a try.
 template <class Message, class Any>
 bool read_as(const Protocol& protocol, const RawReport& raw, std::optional<Any>& out) {
   if constexpr (!std::is_same_v<Message, RawReport>) {
@@ -37,8 +37,9 @@ std::variant<Each...> any_report(const Protocol& protocol, RawReport raw,
 
 }  // namespace detail
 
-/// A report as the one of the types of `Any` that has its code; where none has, or it does not read as
-/// that type says, kept unchanged. `Any` is a `std::variant` over reports and `RawReport`.
+/// Reads a report as the type of `Any` with its code. Returns the unchanged `RawReport` if no type
+/// has this code or the text does not read as that type. `Any` is a `std::variant` over reports and
+/// `RawReport`.
 template <class Any>
 [[nodiscard]] Any any_report(const Protocol& protocol, RawReport raw) {
   return detail::any_report(protocol, std::move(raw), static_cast<const Any*>(nullptr));

@@ -1,4 +1,4 @@
-// What one call can be told, and what can go wrong with it.
+// Options of a call, and the errors that it can end with.
 #pragma once
 
 #include <chrono>
@@ -13,16 +13,17 @@
 
 namespace fc_runtime {
 
-/// What one call can be told.
+/// The options of one call.
 struct CallOptions {
-  /// How long to wait for the response; none for the connection's default.
+  /// Longest wait for the response. Unset: the default of the connection.
   std::optional<std::chrono::milliseconds> timeout;
-  /// Whether to send the call once more when the connection was lost before its answer came; none:
-  /// only what has `Effect::Read`. `true` on anything else may do it twice.
+  /// Sends the call once more if the connection is lost before its response arrives. Unset: only
+  /// calls with `Effect::Read` are repeated. With `true`, the robot may execute any other call
+  /// twice.
   std::optional<bool> repeat;
 };
 
-/// The result code and text that a handler refuses with, or that a peer has refused with.
+/// The result code and text of a refusal, from a handler or a peer.
 struct Refusal {
   /// Result code; not the one of success.
   std::int64_t code = 0;
@@ -38,19 +39,19 @@ struct Refusal {
 /// The refusal as one line.
 [[nodiscard]] std::string to_string(const Refusal& refusal);
 
-/// What a handler has come to: the text of a body with the keys of the response alone, or a refusal.
+/// The outcome of a handler: the body with the keys of the response alone, or a refusal.
 using Handled = Result<std::string, Refusal>;
 
-/// Why a connection was lost, or why there is none.
+/// The reason why a connection was lost or is not available.
 enum class LossKind {
   NotYet,          ///< The first attempt to connect is not over.
   Closed,          ///< The robot has closed the connection after it had sent something.
   Unheard,         ///< The robot has closed the connection before it sent anything.
   Broken,          ///< The connection broke.
-  Frame,           ///< What the robot sent cannot be told into frames.
+  Frame,           ///< The bytes from the robot are not a valid sequence of frames.
   Stalled,         ///< A frame began and did not go on.
   Unread,          ///< The robot did not read what was sent to it.
-  Unreachable,     ///< The network says no to a new connection.
+  Unreachable,     ///< The network refused a new connection.
   ConnectTimeout,  ///< A new connection was not made in time.
   Renewed,         ///< The command connection was made again, and the data connection with it.
   Here,            ///< This side has closed the connection.
@@ -58,54 +59,54 @@ enum class LossKind {
   Settings,        ///< A setting of the client is out of range; `detail` names it.
 };
 
-/// Why a connection was lost, or why there is none.
+/// The reason why a connection was lost or is not available.
 struct Loss {
   /// The reason.
   LossKind kind = LossKind::NotYet;
-  /// What is wrong with the bytes, for `LossKind::Frame`.
+  /// The error in the received bytes, for `LossKind::Frame`.
   std::optional<FrameErrorKind> frame;
-  /// What the system says, where it says something.
+  /// The message of the operating system; empty if it gave none.
   std::string detail;
 
-  /// The reason's fixed name; for `LossKind::Frame` that of the error.
+  /// The fixed name of the reason. For `LossKind::Frame`, the name of the frame error.
   [[nodiscard]] std::string_view name() const noexcept;
 };
 
 /// The loss as one line.
 [[nodiscard]] std::string to_string(const Loss& loss);
 
-/// How a call has failed.
+/// The kind of a failed call.
 enum class CallErrorKind {
-  Refused,          ///< The peer answered with another result than success.
+  Refused,          ///< The peer sent a result other than success.
   Timeout,          ///< No response in time; the peer may have acted.
   NotConnected,     ///< No connection in time; not sent.
   Closed,           ///< The connection is over; not sent.
   Lost,             ///< The connection was lost before the response came; the peer may have acted.
   Busy,             ///< Too many calls are in flight; not sent.
   InvalidRequest,   ///< The request breaks one of its own constraints; not sent.
-  InvalidResponse,  ///< The answer is not a response to this command.
-  Frame,            ///< The request does not fit into a frame, or the answer came in a broken one.
+  InvalidResponse,  ///< The body is not a response to this command.
+  Frame,            ///< The request does not fit into a frame, or the response frame is broken.
 };
 
 /// The name of a kind, the same in every language.
 [[nodiscard]] std::string_view name(CallErrorKind kind) noexcept;
 
-/// A call that has failed.
+/// The error of a failed call.
 struct CallError {
-  /// How.
+  /// The kind of the error.
   CallErrorKind kind = CallErrorKind::Timeout;
-  /// What the peer said, for `Refused`.
+  /// The result of the peer, for `Refused`.
   std::optional<Refusal> refusal;
-  /// Why there is no connection, for `NotConnected`, `Closed` and `Lost`.
+  /// The reason of the loss, for `NotConnected`, `Closed` and `Lost`.
   std::optional<Loss> loss;
-  /// What is wrong with the body, for `InvalidRequest` and `InvalidResponse`.
+  /// The error of the body, for `InvalidRequest` and `InvalidResponse`.
   std::optional<BodyError> body;
-  /// What is wrong with the frame, for `Frame`.
+  /// The error of the frame, for `Frame`.
   std::optional<FrameError> frame;
 
   /// The kind's name.
   [[nodiscard]] std::string_view name() const noexcept { return fc_runtime::name(kind); }
-  /// Whether the peer has certainly not seen the request.
+  /// Returns `true` if the peer has certainly not received the request.
   [[nodiscard]] bool was_not_sent() const noexcept;
 };
 
@@ -113,21 +114,21 @@ struct CallError {
 [[nodiscard]] std::string to_string(const CallError& error);
 std::ostream& operator<<(std::ostream& out, const CallError& error);
 
-/// Whether there is a connection.
+/// The status of a connection.
 enum class ConnectionStatus {
-  Connected,   ///< There is one.
-  Connecting,  ///< There is none, and one is being made.
-  Closed,      ///< There will be none any more.
+  Connected,   ///< The connection is up.
+  Connecting,  ///< The client is connecting.
+  Closed,      ///< The connection is closed for good.
 };
 
-/// Whether there is a connection at a moment, and why not.
+/// A snapshot of a connection: its status, and the reason while it is down.
 struct ConnectionState {
-  /// Whether there is one.
+  /// The status at this moment.
   ConnectionStatus status = ConnectionStatus::Connecting;
-  /// How many connections have been made so far, the present one included. An app that sees another
-  /// number than before asks for the robot's state again: it may have restarted.
+  /// Number of connections made so far, including the current one. If it changes, the robot may
+  /// have restarted: query its state again.
   std::uint64_t connects = 0;
-  /// Why there is none.
+  /// The reason why the connection is down.
   Loss why;
 };
 

@@ -19,17 +19,17 @@
 
 namespace fc_runtime {
 
-/// How to come back after a connection has been lost.
+/// The schedule of reconnection attempts after a loss.
 struct Backoff {
   /// Wait before the first attempt.
   std::chrono::milliseconds first{100};
-  /// Longest wait; each one is twice the one before, and up to a quarter shorter by chance.
+  /// Longest wait. Each wait is twice the previous one, randomly shortened by up to a quarter.
   std::chrono::milliseconds longest{10000};
-  /// Failed attempts in a row before the connection is given up; none to go on for ever.
+  /// Consecutive failed attempts before the client gives up. Unset: no limit.
   std::optional<std::uint32_t> attempts;
 };
 
-/// What a client can be told beforehand. Whatever is not set is the protocol's default.
+/// The settings of a client. Unset ones are the defaults of the protocol.
 struct ClientConfig {
   /// Name or address of the robot.
   std::optional<std::string> host;
@@ -37,31 +37,29 @@ struct ClientConfig {
   std::optional<std::uint16_t> command_port;
   /// Port of streams.
   std::optional<std::uint16_t> data_port;
-  /// How long one attempt to connect may take.
+  /// Longest time of one connection attempt.
   std::chrono::milliseconds connect_timeout{3000};
-  /// How long a call waits for its response, reconnecting included.
+  /// Longest wait of a call for its response, including reconnection.
   std::optional<std::chrono::milliseconds> call_timeout;
-  /// How to reconnect, or none to give up with the first loss.
+  /// The reconnection schedule. Unset: the client gives up after the first loss.
   std::optional<Backoff> reconnect = Backoff();
-  /// After how much silence TCP asks whether the robot is still there, or none not to ask.
+  /// Idle time before TCP keepalive probes the robot. Unset: no probes.
   std::optional<std::chrono::milliseconds> keepalive = std::chrono::seconds(30);
-  /// How long a connection may make no progress, in the middle of a frame or while the robot has
-  /// something to read, before it is given up and made again.
+  /// Longest time without progress inside a frame, or while the robot leaves sent bytes unread.
+  /// Then the client reconnects.
   std::chrono::milliseconds stall_timeout{10000};
-  /// Bounds of everything that grows with what the robot sends.
+  /// Limits of everything that grows with the data from the robot.
   std::optional<Limits> limits;
-  /// Most bytes of reports that wait for one receiver; as many as the longest body may have, unless
-  /// set.
+  /// Most bytes of reports that wait for one receiver. Unset: the length of the longest body.
   std::optional<std::size_t> queued_bytes;
-  /// Message id of the first call; the time of day unless set, so that an app that restarts does not
-  /// use its ids again.
+  /// Message id of the first call. Unset: derived from the time of day, so that a restarted app
+  /// does not reuse its ids.
   std::optional<std::uint32_t> first_id;
-  /// Compresses requests, for robots known to take it.
+  /// Compresses requests. Set it only for robots that accept compression.
   std::optional<Gzip> gzip;
-  /// Whether to verify the digests of what is received.
+  /// Verifies the digests of received frames.
   bool verify_digest = true;
-  /// Whether to search for the next frame where one should begin and does not, instead of closing the
-  /// connection.
+  /// Searches for the next frame after invalid bytes, instead of closing the connection.
   bool resync = false;
   /// Receives the lines of the log. Without it, errors go to the standard error.
   Log log;
@@ -71,13 +69,13 @@ namespace detail {
 class ConnectionImpl;
 }
 
-/// The states of a connection: first the one that it is in, then each that it comes to. Nothing is
-/// queued: who asks late gets the latest.
+/// Iterates over the states of a connection, starting with the current one. States are not queued:
+/// a late caller gets only the latest.
 class ConnectionStates {
  public:
   explicit ConnectionStates(std::shared_ptr<detail::ConnectionImpl> impl)
       : impl_(std::move(impl)) {}
-  /// The next state; none if there is none in time.
+  /// Returns the next state, or nothing if none arrives within `wait`.
   [[nodiscard]] std::optional<ConnectionState> next(std::chrono::milliseconds wait);
 
  private:
@@ -85,27 +83,30 @@ class ConnectionStates {
   std::uint64_t seen_ = 0;
 };
 
-/// A call on its way, to be cancelled if nobody waits for it any more.
+/// A call in flight that can be cancelled.
 class PendingCall {
  public:
   explicit PendingCall(std::function<void()> cancel) : cancel_(std::move(cancel)) {}
-  /// Gives the call's place back; its callback is not called unless it has been already. The robot
-  /// acts all the same once the request is on its way.
+  /// Frees the slot of the call and drops its callback, unless it was called already. A request
+  /// that was sent still takes effect on the robot.
   void cancel() const { cancel_(); }
 
  private:
   std::function<void()> cancel_;
 };
 
-/// A connection to a robot's command port. Cheap to copy; all copies share one connection, which is
-/// closed with the last of them. May be used from any thread. A thread of its own does the work:
-/// callbacks run there, and must not block or call what waits. An exception of a callback is logged.
+/// A connection to the command port of a robot. Copies are cheap and share one connection, which
+/// closes with the last copy. Any thread may use it.
+///
+/// An internal thread does the work and runs the callbacks. They must not block or make blocking
+/// calls. An exception of a callback is logged.
 class Connection {
  public:
-  /// Connects. If the first attempt fails, says why. The protocol has to outlive the connection.
+  /// Connects and waits. Returns the reason if the first attempt fails. The protocol must outlive
+  /// the connection.
   [[nodiscard]] static Result<Connection, Loss> connect(const Protocol& protocol,
                                                         const ClientConfig& config = {});
-  /// Gives a connection that is made in the background; calls made meanwhile wait.
+  /// Returns at once and connects in the background. Calls made in the meantime wait.
   [[nodiscard]] static Connection connect_lazy(const Protocol& protocol,
                                                const ClientConfig& config = {});
 
@@ -122,7 +123,7 @@ class Connection {
     return read_response<Response>(protocol(), *answer, limits().json());
   }
 
-  /// Calls a command; the response is given to `done`, on the thread of the connection.
+  /// Calls a command without waiting. `done` gets the response, on the thread of the connection.
   template <class Request, class Done>
   PendingCall call_async(const Request& request, Done done, const CallOptions& options = {}) const {
     using Response = typename Command<Request>::Response;
@@ -144,29 +145,30 @@ class Connection {
                            usual(options, Command<Request>::effect));
   }
 
-  /// Calls a code with a whole body, envelope included, and gives that of the answer.
+  /// Calls a code with a complete body, including the envelope, and returns the body of the
+  /// response.
   [[nodiscard]] Answer call_body(std::uint16_t code, std::string body,
                                  const CallOptions& options = {}) const;
-  /// The same without waiting.
+  /// Calls a code with a complete body, without waiting.
   PendingCall call_body_async(std::uint16_t code, std::string body, Completion done,
                               const CallOptions& options = {}) const;
 
-  /// The reports from now on, of one code or of any.
+  /// Returns a queue of the reports from now on, with one code or any.
   [[nodiscard]] std::shared_ptr<ReportQueue> reports(
       std::optional<std::uint16_t> code = std::nullopt) const;
-  /// A connection to the data port.
+  /// Returns a connection to the data port.
   [[nodiscard]] DataConnection data() const;
-  /// Whether there is a connection.
+  /// Returns the current state.
   [[nodiscard]] ConnectionState state() const;
-  /// Its states.
+  /// Returns an iterator over the states.
   [[nodiscard]] ConnectionStates states() const;
-  /// Ends the connection for good.
+  /// Closes the connection for good.
   void close() const;
-  /// What it has seen.
+  /// The counters of the connection.
   [[nodiscard]] const ClientCounters& counters() const;
-  /// Counts a report that came in another order than the protocol says.
+  /// Counts a report that violates the order in the protocol.
   void note_out_of_order() const;
-  /// How many calls have not ended.
+  /// Number of calls in flight.
   [[nodiscard]] std::size_t in_flight() const;
   [[nodiscard]] const Protocol& protocol() const;
   [[nodiscard]] const Limits& limits() const;

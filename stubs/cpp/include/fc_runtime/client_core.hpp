@@ -1,5 +1,5 @@
-// A whole client without sockets, threads and clocks: whoever has these tells it what happened and
-// what time it is, and writes what it has to send.
+// A complete client without sockets, threads and clocks. The caller feeds it events and the time,
+// and sends the bytes that it produces.
 #pragma once
 
 #include <condition_variable>
@@ -23,33 +23,33 @@
 
 namespace fc_runtime {
 
-/// What a connection has seen since it was made, reconnecting included.
+/// The counters of a connection since it was created. They continue over reconnections.
 struct ClientCounters {
   Count bytes_in;          ///< Bytes received.
   Count bytes_out;         ///< Bytes handed to the connection to be sent.
-  Count answers;           ///< Answers that reached their call.
-  Count late_answers;      ///< Answers that nobody waited for any more.
-  Count timeouts;          ///< Calls that ended without an answer in time.
+  Count answers;           ///< Responses that reached their call.
+  Count late_answers;      ///< Responses without a waiting call.
+  Count timeouts;          ///< Calls that ended without a response in time.
   Count reports;           ///< Reports put into the queue of a receiver, and acknowledged.
-  Count reports_missed;    ///< Reports that one receiver had no room for while another took them.
+  Count reports_missed;    ///< Reports that a full receiver missed while another took them.
   Count repeated_reports;  ///< Reports that came again and were only acknowledged.
   Count reports_refused;   ///< Reports left unacknowledged: no receiver, or no room.
   Count reports_invalid;   ///< Reports refused because they do not read.
   Count reports_late;      ///< Reports more than one and a half of their intervals after the last.
-  Count reports_out_of_order;  ///< Reports in another order than the protocol says.
+  Count reports_out_of_order;  ///< Reports that violate the order in the protocol.
   Count bad_frames;            ///< Frames that could not be read.
 };
 
-/// The state of a connection, for all who watch it; usable from any thread.
+/// The state of a connection, for all watchers. Any thread may use it.
 class Life {
  public:
   [[nodiscard]] ConnectionState now() const;
-  /// Waits for another state than the `seen`-th; none if there is none in time. Nothing is queued:
-  /// who asks late gets the latest.
+  /// Waits for a state other than number `seen`. Returns nothing if none arrives within `wait`.
+  /// States are not queued: a late caller gets only the latest.
   [[nodiscard]] std::optional<ConnectionState> next(std::uint64_t& seen,
                                                     std::chrono::milliseconds wait) const;
 
-  // For the client.
+  // Called by the client.
   void connected();
   void lost(const Loss& why);
   void close(const Loss& why);
@@ -63,8 +63,8 @@ class Life {
   std::uint64_t version_ = 1;
 };
 
-/// Whether a frame that has begun goes on. It may take the stall timeout, and a second more for each
-/// 16 KiB of it that have come: what a wrong length swallows must not pass for progress.
+/// Detects a stalled frame. A frame may take the stall timeout, plus one second for each received
+/// 16 KiB. The rate limit keeps a wrong length from passing for progress.
 class Progress {
  public:
   explicit Progress(std::chrono::milliseconds limit) : limit_(detail::bounded(limit)) {}
@@ -73,16 +73,16 @@ class Progress {
   void came(Instant now) {
     if (since_) since_->second = now;
   }
-  /// When a frame of which so many bytes have come stalls; none in between frames.
+  /// Returns the time when the frame stalls after `received` bytes, or nothing between frames.
   [[nodiscard]] std::optional<Instant> deadline(std::size_t received, Instant now);
 
  private:
   std::chrono::milliseconds limit_;
-  /// When the frame began, and when bytes of it last came.
+  /// The arrival of the first and of the latest bytes of the frame.
   std::optional<std::pair<Instant, Instant>> since_;
 };
 
-/// What a client needs to know, all of it filled in.
+/// The settings of a client, all set.
 struct ClientSettings {
   Limits limits;
   std::chrono::milliseconds call_timeout{3000};
@@ -94,49 +94,49 @@ struct ClientSettings {
   bool resync = false;
 };
 
-/// The answer to a call: the text of its body, or why there is none.
+/// The outcome of a call: the body of the response, or the error.
 using Answer = Result<std::string, CallError>;
-/// What is done with an answer. Called once.
+/// Takes the outcome of a call. Called once.
 using Completion = std::function<void(Answer)>;
 
-/// A client. Not to be used from two threads at once, but for what it shares.
+/// A client. It is not thread-safe, except for its shared parts.
 class ClientCore {
  public:
-  /// The protocol has to outlive it.
+  /// The protocol must outlive the client.
   ClientCore(const Protocol& protocol, const ClientSettings& settings);
 
-  /// Makes a call with a whole body. It is ended by `settle`; `cancel` takes the number given here.
+  /// Starts a call with a complete body. `settle` completes it. Returns its number for `cancel`.
   std::uint64_t call(std::uint16_t code, std::string body, const CallOptions& options,
                      Completion done, Instant now);
-  /// Ends a call that nobody waits for any more; its completion is not called.
+  /// Cancels a call. Its completion is not called.
   void cancel(std::uint64_t call);
 
-  /// There is a connection.
+  /// Notes that the connection is up.
   void connected();
-  /// Bytes have come. Says why the connection has to end, if it has to.
+  /// Takes received bytes. Returns the reason if the connection must end.
   [[nodiscard]] std::optional<Loss> received(std::string_view bytes, Instant now);
-  /// The robot has closed its end: why the connection has ended.
+  /// Returns the reason of the loss after the robot has closed its end.
   [[nodiscard]] Loss ended() const;
-  /// The connection has ended, and another one will be made.
+  /// Notes that the connection is lost and another one follows.
   void lost(const Loss& why);
-  /// There will be no connection any more.
+  /// Notes that no connection follows.
   void close(const Loss& why);
-  /// Time has passed. Says why the connection has to end, if it has to.
+  /// Advances the time. Returns the reason if the connection must end.
   [[nodiscard]] std::optional<Loss> advance(Instant now);
-  /// When `advance` is to be called at the latest.
+  /// The latest time for the next call of `advance`.
   [[nodiscard]] std::optional<Instant> next_due(Instant now);
-  /// What is to be sent; from then on it is the caller's.
+  /// Returns the bytes to send, and forgets them.
   [[nodiscard]] std::string take_out() { return std::exchange(out_, std::string()); }
-  /// How much of that is not written yet, in bytes.
+  /// Sets the number of bytes from `take_out` that are not written yet.
   void set_unwritten(std::size_t bytes, Instant now);
-  /// Calls the completions of calls that have ended.
+  /// Calls the completions of ended calls.
   void settle();
 
-  /// Whether the robot has sent a frame over this connection.
+  /// Returns `true` once the robot has sent a frame over this connection.
   [[nodiscard]] bool is_heard() const { return heard_; }
   [[nodiscard]] std::size_t in_flight() const { return session_.in_flight(); }
 
-  // What it shares with other threads.
+  // Parts shared with other threads.
   [[nodiscard]] Life& life() { return *life_; }
   [[nodiscard]] Receivers& receivers() { return *receivers_; }
   [[nodiscard]] const ClientCounters& counters() const { return *counters_; }
@@ -179,7 +179,7 @@ class ClientCore {
   bool closed_ = false;
   bool heard_ = false;
   Loss why_;
-  /// When the last report of a code came over this connection.
+  /// The arrival of the last report with each code over this connection.
   std::map<std::uint16_t, Instant> beats_;
   std::unique_ptr<Life> life_ = std::make_unique<Life>();
   std::unique_ptr<Receivers> receivers_;

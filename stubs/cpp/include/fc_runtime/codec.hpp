@@ -1,5 +1,5 @@
-// How the fields of any message are read, written, compared and printed: visitors of the fields that a
-// message names once. Included by the generated .cpp files alone.
+// Visitors that read, write, compare and print the fields of any message. Only generated .cpp files
+// include this header.
 #pragma once
 
 #include <cstddef>
@@ -27,10 +27,10 @@ namespace detail {
 
 // ---- visitors of fields ----
 
-/// Where the value of each field begins that has come, by the field's place in its message; 0 for none.
+/// The offset of each received value, by the index of its field in the message. 0: not received.
 using Places = std::vector<std::size_t>;
 
-/// Reads the value of one key into the field that it belongs to.
+/// Reads the value of one key into its field.
 class ReadKey {
  public:
   ReadKey(Reader& reader, std::string_view key, Places& places)
@@ -70,7 +70,7 @@ class ReadKey {
   bool good_ = true;
 };
 
-/// Finds the first required field that has not come.
+/// Finds the first missing required field.
 class FindMissing {
  public:
   explicit FindMissing(const Places& places) : places_(places) {}
@@ -90,7 +90,7 @@ class FindMissing {
   std::string_view missing_;
 };
 
-/// Finds the first field that breaks one of its constraints, once all of them have come.
+/// Finds the first field that breaks one of its constraints. Runs after all fields are read.
 class FindBreach {
  public:
   FindBreach(Reader& reader, const Places& places) : reader_(reader), places_(places) {}
@@ -194,7 +194,7 @@ void write_value(Writer& writer, const Field& field, const T& value) {
   }
 }
 
-/// Writes each field that is there.
+/// Writes each present field.
 class WriteMembers {
  public:
   WriteMembers(Writer& writer, bool first) : writer_(writer), first_(first) {}
@@ -229,7 +229,7 @@ class WriteMembers {
 
 // ---- comparing ----
 
-/// Takes down where the members of one message are.
+/// Collects the addresses of the members of one message.
 class CollectMembers {
  public:
   explicit CollectMembers(std::vector<const void*>& members) : members_(members) {}
@@ -243,7 +243,7 @@ class CollectMembers {
   std::vector<const void*>& members_;
 };
 
-/// Compares the members of another message of the same type with them.
+/// Compares the collected members with those of another message of the same type.
 class CompareMembers {
  public:
   explicit CompareMembers(const std::vector<const void*>& members) : members_(members) {}
@@ -313,7 +313,7 @@ void print_value(std::ostream& out, const Field& field, const T& value) {
   }
 }
 
-/// Prints each field that is there, the values of sensitive ones aside.
+/// Prints each present field, and masks the values of sensitive ones.
 class PrintMembers {
  public:
   explicit PrintMembers(std::ostream& out) : out_(out) {}
@@ -479,7 +479,7 @@ void EnumCodec<T>::write(Writer& writer, const Field& field, const T& value) {
 
 namespace detail {
 
-/// The entry of a value among those that are known; null for any other.
+/// Returns the entry of a known value, or null for an unknown one.
 template <class T>
 const auto* find_value(const T& value) noexcept {
   const auto& all = Values<T>::all;

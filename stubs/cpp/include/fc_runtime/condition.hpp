@@ -1,4 +1,4 @@
-// Whether each field that is there only under a condition is there exactly then. For codec.hpp.
+// Checks that each conditional field is present exactly if its condition holds. For codec.hpp.
 #pragma once
 
 #include <cstddef>
@@ -42,7 +42,7 @@ void ask_conditions(const T& value, std::optional<ConditionError>& found) {
 
 }  // namespace detail
 
-/// Asks the conditions of a message's own fields, and those of the messages in it.
+/// Checks the conditions of the fields of a message, including nested messages.
 class Conditions {
  public:
   template <class T>
@@ -54,7 +54,7 @@ class Conditions {
     found_->path.insert(0, std::string(field.key()) + (dotted ? "." : ""));
   }
 
-  /// A field that is there exactly where `holds`.
+  /// Checks that a field is present exactly if `holds` is true.
   template <class T>
   void asks(std::string_view key, const std::optional<T>& member, bool holds,
             std::string_view condition) {

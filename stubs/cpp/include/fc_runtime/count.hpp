@@ -1,4 +1,4 @@
-// Numbers that one thread counts up and any thread reads.
+// Counters with one writing thread and any number of readers.
 #pragma once
 
 #include <atomic>
@@ -6,7 +6,7 @@
 
 namespace fc_runtime {
 
-/// A number that one thread counts up and any thread reads.
+/// A counter that one thread increments and any thread reads.
 class Count {
  public:
   void operator+=(std::uint64_t more) noexcept {

@@ -1,4 +1,4 @@
-// An app's connection to the data port: frames of raw bytes in both directions.
+// The connection of an app to the data port: frames of raw bytes in both directions.
 #pragma once
 
 #include <chrono>
@@ -14,33 +14,33 @@ namespace fc_runtime {
 
 /// A frame of raw bytes.
 struct StreamFrame {
-  /// What the bytes belong to.
+  /// The code of the stream.
   std::uint16_t code = 0;
-  /// Which request they answer or prepare.
+  /// Message id of the request that the bytes belong to.
   std::uint32_t id = 0;
   /// The bytes, decompressed.
   std::string data;
 };
 
-/// How receiving or sending a stream has failed.
+/// The kind of a failed receive or send.
 enum class DataErrorKind {
   NotConnected,  ///< No connection in time; nothing was sent.
   Closed,        ///< The connection is over.
-  Lost,          ///< The connection was lost: what was on its way may have arrived or not.
-  Frame,         ///< A frame came broken, or what is to be sent does not fit into one.
+  Lost,          ///< The connection was lost. Frames in transit may have arrived.
+  Frame,         ///< A received frame is broken, or the data does not fit into a frame.
   Timeout,       ///< Nothing came in time.
 };
 
 /// The name of a kind, the same in every language.
 [[nodiscard]] std::string_view name(DataErrorKind kind) noexcept;
 
-/// Why a stream was not received or sent.
+/// The error of a failed receive or send.
 struct DataError {
-  /// How it has failed.
+  /// The kind of the error.
   DataErrorKind kind = DataErrorKind::Lost;
-  /// Why there is no connection.
+  /// The reason of the loss.
   std::optional<Loss> loss;
-  /// What is wrong with the frame.
+  /// The error of the frame.
   std::optional<FrameError> frame;
 };
 
@@ -52,16 +52,17 @@ class DataImpl;
 struct Subscribed;
 }  // namespace detail
 
-/// The frames of one stream, from when it was made. A few of them wait; while nobody takes them, the
-/// oldest makes way. Keeps the data connection open.
+/// The frames of one stream, from the subscription on. The queue holds a few frames, and drops the
+/// oldest when it is full. Keeps the data connection open.
 class Subscription {
  public:
   Subscription(std::shared_ptr<detail::DataImpl> impl,
                std::shared_ptr<detail::Subscribed> subscribed);
 
-  /// The next frame. Unless the error is `Closed`, the next call goes on with the next frame.
+  /// Returns the next frame. The error `Closed` is final; after any other, the next call continues
+  /// with the next frame.
   [[nodiscard]] Result<StreamFrame, DataError> next(std::chrono::milliseconds wait) const;
-  /// How many frames have made way so far.
+  /// Number of dropped frames so far.
   [[nodiscard]] std::uint64_t missed() const;
 
  private:
@@ -69,23 +70,26 @@ class Subscription {
   std::shared_ptr<detail::Subscribed> subscribed_;
 };
 
-/// A connection to a robot's data port. It is made in the background as soon as the command
-/// connection is there, made again after a loss and whenever the command connection was, and ends
-/// with it. Nothing is queued but a few frames: while the app does not take what has arrived, the
-/// robot is not read. Keeps the command connection open.
+/// A connection to the data port of a robot. It follows the command connection: the client connects
+/// it in the background, reconnects it after a loss of either, and closes it with the command
+/// connection.
+///
+/// Only a few frames are queued. While the app does not take them, the client stops reading from
+/// the robot. Keeps the command connection open.
 class DataConnection {
  public:
   explicit DataConnection(std::shared_ptr<detail::DataImpl> impl);
 
-  /// Waits until there is a connection, for no longer than the call timeout. A robot sends what it is
-  /// asked for to the data connections that there are: wait for this one before asking.
+  /// Waits until the connection is up, at most for the call timeout. A robot sends requested data
+  /// to the data connections that are open then. Wait for this one before you send the request.
   [[nodiscard]] Result<Done, DataError> connected() const;
-  /// The frames of one code, which then do not come out of `next`. Where there are subscriptions and
-  /// `next` has never been asked, frames of other codes are dropped.
+  /// Returns the frames with one code. `next` then skips them. With subscriptions, frames with
+  /// other codes are dropped until the first call of `next`.
   [[nodiscard]] Subscription subscribe(std::uint16_t code) const;
-  /// The next frame. Unless the error is `Closed`, the next call goes on with the next frame.
+  /// Returns the next frame. The error `Closed` is final; after any other, the next call continues
+  /// with the next frame.
   [[nodiscard]] Result<StreamFrame, DataError> next(std::chrono::milliseconds wait) const;
-  /// Sends a frame, and waits until the socket has taken it.
+  /// Sends a frame, and waits until the socket has accepted it.
   [[nodiscard]] Result<Done, DataError> send(std::uint16_t code, std::uint32_t id,
                                              std::string_view data) const;
 

@@ -1,4 +1,4 @@
-// How the header of a frame says that its data has arrived undamaged.
+// Digests that protect the data of a frame against transmission errors.
 #pragma once
 
 #include <array>
@@ -8,22 +8,22 @@
 
 namespace fc_runtime {
 
-/// How data is digested. It guards against damage on the way, not against anybody's intent.
+/// The digest algorithm. It detects damage in transit, not manipulation.
 enum class DigestAlgorithm {
-  None,   ///< Not at all: damage is left to TCP and to the parser.
+  None,   ///< No digest. TCP and the parser detect damage.
   Crc32,  ///< CRC-32 as in gzip; most significant byte first.
   Md5,    ///< MD5 (RFC 1321).
 };
 
-/// Room for the longest digest. A shorter one takes the first bytes, and zeros follow.
+/// Space for the longest digest. A shorter one occupies the first bytes, followed by zeros.
 using Sum = std::array<std::uint8_t, 16>;
 
-/// MD5 (RFC 1321) of data that comes in pieces.
+/// MD5 (RFC 1321) of data in several pieces.
 class Md5 {
  public:
-  /// Takes in more data.
+  /// Adds data.
   void update(std::string_view data);
-  /// The digest of all that was taken in. Nothing may follow.
+  /// Returns the digest of all added data. Do not use the object afterwards.
   [[nodiscard]] Sum finish();
 
  private:
@@ -34,7 +34,7 @@ class Md5 {
   std::uint64_t length_ = 0;
 };
 
-/// The digest of data as a whole.
+/// Returns the digest of complete data.
 [[nodiscard]] Sum digest_of(DigestAlgorithm algorithm, std::string_view data);
 
 }  // namespace fc_runtime

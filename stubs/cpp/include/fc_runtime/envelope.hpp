@@ -1,4 +1,4 @@
-// The keys that stand beside a message's own in one object.
+// The envelope: keys in the same object as those of the message.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,24 @@
 
 namespace fc_runtime {
 
-/// What the keys of an envelope say.
+/// The values of an envelope.
 struct Envelope {
-  /// When the message was made, in milliseconds since 1970-01-01T00:00:00Z.
+  /// Creation time of the message, in milliseconds since 1970-01-01T00:00:00Z.
   std::optional<std::int64_t> time_ms;
   /// The result code of a response.
   std::optional<std::int64_t> code;
-  /// The text beside it. Never rely on it.
+  /// The result text. Never rely on it.
   std::optional<std::string> text;
 };
 
-/// Reads the keys of an envelope on the way through a body.
+/// Reads the envelope keys while a body is read.
 class EnvelopeReader : public Beside {
  public:
   explicit EnvelopeReader(const std::vector<EnvelopeKey>& keys)
       : keys_(&keys), seen_(keys.size()) {}
 
   [[nodiscard]] bool read(std::string_view key, Reader& reader, bool& taken) override;
-  /// What is missing at the end, or out of its range.
+  /// Returns the error if a key is missing or its value is out of range.
   [[nodiscard]] std::optional<BodyError> finish() const;
   [[nodiscard]] const Envelope& envelope() const { return envelope_; }
 
@@ -39,26 +39,26 @@ class EnvelopeReader : public Beside {
   Envelope envelope_;
 };
 
-/// Reads the keys of an envelope, and skips all others.
+/// Reads the envelope keys and skips all others.
 [[nodiscard]] Result<Envelope, BodyError> read_envelope(const std::vector<EnvelopeKey>& keys,
                                                         std::string_view text,
                                                         const Allowance& allowance);
 
-/// What is wrong with a body of a type, if anything is: with its envelope, or else with its own keys.
+/// Checks a body of a type. Returns the error of the envelope, or else of the message.
 [[nodiscard]] std::optional<BodyError> check_enveloped(const TypeInfo& type,
                                                        const std::vector<EnvelopeKey>& keys,
                                                        std::string_view text,
                                                        const Allowance& allowance);
 
-/// Starts an object with the keys of an envelope, and leaves it open. Says whether none came.
+/// Opens an object and writes the envelope keys. Returns `true` if there were none.
 [[nodiscard]] bool begin_enveloped(const std::vector<EnvelopeKey>& keys, const Envelope& envelope,
                                    Writer& writer);
 
-/// An object with the keys of an envelope alone.
+/// Returns an object with the envelope keys alone.
 [[nodiscard]] std::string write_envelope(const std::vector<EnvelopeKey>& keys,
                                          const Envelope& envelope);
 
-/// Milliseconds since 1970-01-01T00:00:00Z.
+/// Returns the current time in milliseconds since 1970-01-01T00:00:00Z.
 [[nodiscard]] std::int64_t unix_ms();
 
 namespace detail {
@@ -75,17 +75,17 @@ void write_members_of(Writer& writer, const void* message, bool first) {
 
 }  // namespace detail
 
-/// An envelope, and the message beside it or what is wrong with that: a refusal that carries nothing
-/// but an envelope is still understood.
+/// An envelope and its message, or the error of the message. A refusal with nothing but an envelope
+/// is thus understood.
 template <class T>
 struct Enveloped {
-  /// The keys of the envelope.
+  /// The values of the envelope.
   Envelope envelope;
-  /// The message's own keys.
+  /// The message.
   Result<T, BodyError> body;
 };
 
-/// Reads the keys of an envelope and of a message in any order. Unknown keys go to the message.
+/// Reads the keys of an envelope and of a message in any order. The message keeps unknown keys.
 template <class T>
 Result<Enveloped<T>, BodyError> read_enveloped(const std::vector<EnvelopeKey>& keys,
                                                std::string_view text,
@@ -102,8 +102,7 @@ Result<Enveloped<T>, BodyError> read_enveloped(const std::vector<EnvelopeKey>& k
   return Enveloped<T>{*std::move(envelope), std::move(error)};
 }
 
-/// Writes the keys of an envelope and of a message as one object, if the message keeps its own
-/// constraints.
+/// Writes an envelope and a message as one object, if the message satisfies its constraints.
 template <class T>
 Result<std::string, BodyError> write_enveloped(const std::vector<EnvelopeKey>& keys,
                                                const Envelope& envelope, const T& message) {

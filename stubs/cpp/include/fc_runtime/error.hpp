@@ -1,4 +1,4 @@
-// What can be wrong with a frame or a body, by the names that all languages share.
+// Errors of frames and bodies. All languages share their names.
 #pragma once
 
 #include <cstddef>
@@ -9,38 +9,38 @@
 
 namespace fc_runtime {
 
-/// What is wrong with a body.
+/// The kind of an error in a body.
 enum class BodyErrorKind {
   NotUtf8,        ///< The bytes are not UTF-8.
   BadJson,        ///< The text is not JSON (RFC 8259).
   NotAnObject,    ///< The body is JSON, but not an object.
-  WrongType,      ///< A value of another kind than the field's.
+  WrongType,      ///< A value has another JSON type than its field.
   MissingField,   ///< A required key is missing.
-  DuplicateKey,   ///< A known key comes twice in its object.
-  LoneSurrogate,  ///< Half of a surrogate pair stands alone in a string or key that is read.
-  OutOfRange,     ///< A number outside its range, or an enum value that its field does not take.
-  BadLength,      ///< A string, list or run of bytes of a length outside its constraint.
-  BadPattern,     ///< A string that does not match its pattern.
-  UnknownValue,   ///< A value that a closed enum does not have.
-  NoVariant,      ///< An object with the required keys of no variant of a choice.
+  DuplicateKey,   ///< A known key occurs twice in its object.
+  LoneSurrogate,  ///< A string or key contains an unpaired surrogate.
+  OutOfRange,     ///< A number is out of range, or the field excludes the enum value.
+  BadLength,      ///< The length of a string, list or byte array is out of range.
+  BadPattern,     ///< A string does not match its pattern.
+  UnknownValue,   ///< A closed enum does not have this value.
+  NoVariant,      ///< An object has the required keys of no variant of its choice.
   TooDeep,        ///< Nested deeper than the limit.
   TooManyValues,  ///< More keys and items than the limit.
   ListsTooLarge,  ///< The items of lists take more memory than the limit.
-  BadBase64,      ///< A string that is not base64 (RFC 4648, standard alphabet, padded).
+  BadBase64,      ///< A string is not base64 (RFC 4648, standard alphabet, padded).
 };
 
 /// The name of a kind, the same in every language.
 [[nodiscard]] std::string_view name(BodyErrorKind kind) noexcept;
 
-/// A body that cannot be read, or that breaks its constraints.
+/// The error of a body that cannot be read, or that breaks its constraints.
 struct BodyError {
-  /// What is wrong.
+  /// The kind of the error.
   BodyErrorKind kind = BodyErrorKind::BadJson;
-  /// Where in the body, such as `data.stations[3].x`; empty for the body itself.
+  /// The path to the error, such as `data.stations[3].x`. Empty for the body itself.
   std::string path;
-  /// Bytes of the text before the fault; 0 for a message that was never text.
+  /// The offset of the error in the text, in bytes. 0 for a message that was never text.
   std::size_t offset = 0;
-  /// What was found and what is wanted.
+  /// The value that was found and the one that was expected.
   std::string detail;
 
   /// The kind's name.
@@ -51,11 +51,11 @@ struct BodyError {
 [[nodiscard]] std::string to_string(const BodyError& error);
 std::ostream& operator<<(std::ostream& out, const BodyError& error);
 
-/// What is wrong with a frame.
+/// The kind of an error in a frame.
 enum class FrameErrorKind {
-  BadHead,              ///< No frame begins here; the connection is of no more use.
-  ShortFrame,           ///< The total length is shorter than the header; likewise.
-  FrameTooLong,         ///< The total length exceeds the limit; likewise.
+  BadHead,              ///< No frame begins here. The connection is unusable.
+  ShortFrame,           ///< The total length is less than the header. The connection is unusable.
+  FrameTooLong,         ///< The total length exceeds the limit. The connection is unusable.
   Truncated,            ///< The bytes end inside a frame.
   UnknownKind,          ///< Unknown kind.
   ReservedKind,         ///< Reserved kind, always refused.
@@ -63,16 +63,16 @@ enum class FrameErrorKind {
   BadDigest,            ///< The digest does not match the data.
   BadGzip,              ///< The data is not one complete gzip member.
   PlainLengthMismatch,  ///< The length before compression does not match the data.
-  InflatedTooLong,      ///< Exceeds the limit after decompression.
-  InflatesTooMuch,      ///< Grows by more than the limit allows when decompressed.
+  InflatedTooLong,      ///< The decompressed data exceeds the limit.
+  InflatesTooMuch,      ///< The compression ratio exceeds the limit.
 };
 
 /// The name of a kind, the same in every language.
 [[nodiscard]] std::string_view name(FrameErrorKind kind) noexcept;
 
-/// What ties a frame to another: an answer has those of its request.
+/// The fields that match a response or acknowledgement with its request or report.
 struct FrameId {
-  /// Whether it has the head of responses.
+  /// `true` for a frame with the head of responses.
   bool response = false;
   /// Kind of the data.
   std::uint8_t kind = 0;
@@ -90,16 +90,17 @@ struct FrameId {
   }
 };
 
-/// A frame that cannot be read or written.
+/// The error of a frame that cannot be read or written.
 struct FrameError {
-  /// What is wrong.
+  /// The kind of the error.
   FrameErrorKind kind = FrameErrorKind::BadHead;
-  /// Which frame, where its header could be trusted.
+  /// The frame, if its header is trustworthy.
   FrameId frame;
 
   /// The kind's name.
   [[nodiscard]] std::string_view name() const noexcept { return fc_runtime::name(kind); }
-  /// Whether nothing behind it can be read: where the next frame begins is not known.
+  /// Returns `true` if nothing after the error can be read. The start of the next frame is unknown
+  /// then.
   [[nodiscard]] bool is_fatal() const noexcept {
     return kind == FrameErrorKind::BadHead || kind == FrameErrorKind::ShortFrame ||
            kind == FrameErrorKind::FrameTooLong || kind == FrameErrorKind::Truncated;

@@ -1,4 +1,4 @@
-// How a field travels and what it demands, as a message says it once.
+// The wire format and constraints of a field.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ class Limit {
 
   [[nodiscard]] constexpr bool is_set() const { return is_set_; }
 
-  /// Whether a number is less than this.
+  /// Returns `true` if a number is less than this limit.
   template <class Number>
   [[nodiscard]] bool above(Number value) const {
     if constexpr (std::is_floating_point_v<Number>) {
@@ -40,7 +40,7 @@ class Limit {
     }
   }
 
-  /// Whether a number is greater than this.
+  /// Returns `true` if a number is greater than this limit.
   template <class Number>
   [[nodiscard]] bool below(Number value) const {
     if constexpr (std::is_floating_point_v<Number>) {
@@ -75,12 +75,12 @@ class Limit {
   double float_ = 0;
 };
 
-/// A field of a message, as the message names it to anyone who visits its fields.
+/// A field of a message, as visitors of the message see it.
 class Field {
  public:
   constexpr explicit Field(std::string_view key) : key_(key) {}
 
-  /// Other keys that are read as this one.
+  /// Other keys that are read into this field.
   template <std::size_t N>
   constexpr Field also(const std::string_view (&keys)[N]) const {
     Field field = *this;
@@ -96,7 +96,7 @@ class Field {
   constexpr Field lenient_number() const { return with(&Field::lenient_number_); }
   /// A bool that is also read from its string, and from 1 and 0.
   constexpr Field lenient_bool() const { return with(&Field::lenient_bool_); }
-  /// `{}`, `[]` and `""` stand for an absent value, as `null` does.
+  /// Reads `{}`, `[]` and `""` as an absent value, like `null`.
   constexpr Field empty_is_absent() const { return with(&Field::empty_is_absent_); }
   /// Bytes that travel as base64.
   constexpr Field base64() const { return with(&Field::base64_); }
@@ -116,7 +116,7 @@ class Field {
     field.max_ = Limit::of(value);
     return field;
   }
-  /// Fewest and most characters of a string, bytes of a base64, items of a list.
+  /// Least and most characters of a string, bytes of base64 data, or items of a list.
   constexpr Field length(std::uint64_t least, std::uint64_t most) const {
     Field field = *this;
     field.has_length_ = true;
@@ -124,13 +124,13 @@ class Field {
     field.most_ = most;
     return field;
   }
-  /// A regular expression that a string matches as a whole.
+  /// A regular expression that a string must match as a whole.
   constexpr Field pattern(std::string_view source) const {
     Field field = *this;
     field.pattern_ = source;
     return field;
   }
-  /// The values of an enum that are taken, as numbers.
+  /// The allowed values of an enum, as numbers.
   template <std::size_t N>
   constexpr Field only(const std::int64_t (&values)[N]) const {
     Field field = *this;
@@ -138,7 +138,7 @@ class Field {
     field.only_count_ = N;
     return field;
   }
-  /// The values of an enum that are taken, as texts.
+  /// The allowed values of an enum, as strings.
   template <std::size_t N>
   constexpr Field only(const std::string_view (&values)[N]) const {
     Field field = *this;
@@ -159,22 +159,23 @@ class Field {
   [[nodiscard]] constexpr bool has_length() const { return has_length_; }
   [[nodiscard]] constexpr bool has_only() const { return only_count_ > 0; }
 
-  /// Whether a key is one of this field's.
+  /// Returns `true` if a key belongs to this field.
   [[nodiscard]] constexpr bool is_called(std::string_view key) const {
     return key == key_ || name_of(key).data() != key_.data();
   }
-  /// A key as this field itself has it, which outlives what was read; its own for one that is not its.
+  /// Returns the equal key of this field, which outlives the text that was read. Returns the main
+  /// key if none is equal.
   [[nodiscard]] constexpr std::string_view name_of(std::string_view key) const {
     for (std::size_t index = 0; index < also_count_; ++index) {
       if (key == also_[index]) return also_[index];
     }
     return key_;
   }
-  /// The keys that are read as this field's, its own first.
+  /// The other keys that are read into this field.
   [[nodiscard]] constexpr std::size_t also_count() const { return also_count_; }
   [[nodiscard]] constexpr std::string_view also_at(std::size_t index) const { return also_[index]; }
 
-  /// Returns the reason why the field does not take a number; an empty text if it takes it.
+  /// Returns the reason why the field refuses a number, or an empty string if it accepts it.
   template <class Number>
   [[nodiscard]] std::string_view number_fault(Number value) const {
     if (min_.is_set() && min_.above(value)) return "the number is too small";

@@ -1,4 +1,4 @@
-// What a command has set off, followed to its end: the answer, and then its reports.
+// Follows the process that a command starts: the response, and then the reports.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace fc_runtime {
 
-/// An event of a process that is being followed.
+/// An event of a followed process.
 template <class Message>
 struct Followed {
   /// The kind of the event.
@@ -41,9 +41,8 @@ struct Followed {
   }
 };
 
-/// A command that has been answered, and the reports that it sets off. It has a queue of its own for
-/// reports of that code; where nothing in the messages ties a report to a call, it has also those that
-/// others have set off.
+/// An accepted command and the reports of its process. It has its own queue for reports with that
+/// code. If no field ties a report to a call, it also returns the reports of other calls.
 template <class Request, class Message>
 class Following {
  public:
@@ -56,9 +55,10 @@ class Following {
         request_(std::move(request)),
         answer_(std::move(answer)) {}
 
-  /// What the robot has answered to the command.
+  /// The response of the robot to the command.
   [[nodiscard]] const Response& answer() const { return answer_; }
-  /// What comes next; none if nothing has come in time, or after the last.
+  /// Returns the next event. Returns nothing if none arrives within `wait`, or after the last
+  /// event.
   [[nodiscard]] std::optional<Followed<Message>> next(std::chrono::milliseconds wait) {
     const auto until = detail::after(std::chrono::steady_clock::now(), wait);
     while (queue_) {
@@ -100,7 +100,7 @@ class Following {
     using Facts = Report<Message>;
     auto report = read_report<Message>(connection_.protocol(), event.report.text,
                                        connection_.limits().json());
-    // It was read before it was acknowledged.
+    // The client has read it successfully before the acknowledgement.
     if (!report || !SetsOff<Request, Message>::is_of(request_, answer_, *report)) {
       return std::nullopt;
     }
@@ -114,15 +114,15 @@ class Following {
   }
 
   Connection connection_;
-  /// Until the end: what comes then, nobody would read here.
+  /// Null after the last event: later reports would have no reader.
   std::shared_ptr<ReportQueue> queue_;
   Request request_;
   Response answer_;
-  /// The last report that had a state.
+  /// The last report with a state.
   std::optional<Message> last_;
 };
 
-/// Calls a command, and follows what it sets off from the moment on in which the request is sent.
+/// Calls a command and follows its process from the moment the request is sent.
 template <class Message, class Request>
 Called<Following<Request, Message>> follow(const Connection& connection, const Request& request,
                                            const CallOptions& options = {}) {

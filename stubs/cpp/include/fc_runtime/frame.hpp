@@ -15,11 +15,11 @@
 
 namespace fc_runtime {
 
-/// What the header of a frame says.
+/// The fields of a frame header.
 struct Header {
-  /// Which message it belongs to.
+  /// The head, kind, command code and message id.
   FrameId frame;
-  /// How the data is packed.
+  /// The encoding of the data, such as gzip.
   std::uint8_t encoding = 0;
   /// Length of the whole frame, header included, in bytes.
   std::uint32_t total_length = 0;
@@ -29,7 +29,7 @@ struct Header {
   Sum digest = {};
 };
 
-/// A frame whose data lies in its decoder, until the decoder is asked for the next.
+/// A frame. The decoder owns its data until the next call of `next`.
 struct Frame {
   /// The header as received.
   Header header;
@@ -37,38 +37,42 @@ struct Frame {
   std::string_view data;
 };
 
-/// Cuts a stream of bytes into frames.
+/// Splits a stream of bytes into frames.
 ///
-/// Bytes come in with `push` in any split; `next` gives one frame after the other. What can be
-/// refused is refused as soon as it is known: a wrong head with its first wrong byte, an impossible
-/// length before the data has come. Memory grows with what has really arrived.
+/// `push` takes bytes in any split; `next` returns one frame after the other. The decoder refuses
+/// invalid input early: a wrong head at its first wrong byte, an impossible length before the data
+/// has arrived. Memory grows only with bytes that have arrived.
 class Decoder {
  public:
-  /// A decoder with the protocol's default limits, which verifies digests and does not search for
-  /// lost frames. The protocol has to outlive it.
+  /// Creates a decoder with the default limits of the protocol. It verifies digests and does not
+  /// resync. The protocol must outlive the decoder.
   explicit Decoder(const Protocol& protocol);
 
-  /// Sets the longest frame, the longest data after decompression, and by how much it may grow.
+  /// Sets the longest frame, the longest decompressed data, and the largest compression ratio.
   void set_limits(const Limits& limits) { limits_ = limits; }
-  /// Whether to verify digests (the default).
+  /// Turns the verification of digests on (the default) or off.
   void set_verify_digest(bool verify) { verify_digest_ = verify; }
-  /// Whether to search for the next frame after a wrong head or an impossible length, instead of
-  /// failing for good (the default). While searching, only a frame that is right in every respect is
-  /// taken for one; a search that has looked at several times the longest frame without success fails.
+  /// Makes the decoder search for the next frame after a wrong head or an impossible length. By
+  /// default, such an error is final.
+  ///
+  /// A search accepts only a frame without any error. It fails after several times the longest
+  /// frame.
   void set_resync(bool resync) { resync_ = resync; }
 
   /// Appends received bytes.
   void push(std::string_view bytes);
-  /// The next whole frame; none if it has not arrived yet. After a fatal error every further call
-  /// gives it again; otherwise the frame has been skipped and the next call goes on behind it.
+  /// Returns the next complete frame, or nothing if it has not arrived yet. A fatal error is
+  /// returned by every further call. After any other error, the next call continues with the next
+  /// frame.
   [[nodiscard]] Result<std::optional<Frame>, FrameError> next();
-  /// Why the stream may not end here: the fatal error, or that it would end inside a frame.
+  /// Returns the error if the stream must not end here: the fatal error, or `Truncated` inside a
+  /// frame.
   [[nodiscard]] std::optional<FrameError> finish() const;
-  /// Bytes received and not yet given out as frames.
+  /// Number of received bytes that were not returned as frames yet.
   [[nodiscard]] std::size_t pending() const noexcept { return received_.size() - start_; }
-  /// How long the frame that has begun to arrive claims to be, if that has come already.
+  /// The announced length of the current frame, in bytes, once it has arrived.
   [[nodiscard]] std::optional<std::uint32_t> expected() const;
-  /// Bytes passed over in search of a frame since the beginning.
+  /// Number of bytes skipped by searches so far.
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
   /// Memory held for buffers, in bytes.
   [[nodiscard]] std::size_t capacity() const noexcept {
@@ -94,36 +98,36 @@ class Decoder {
   std::size_t start_ = 0;
   std::string inflated_;
   std::optional<Inflater> inflater_;
-  /// Bytes have been skipped, and no frame has been found since.
+  /// `true` if bytes were skipped and no frame has been found since.
   bool searching_ = false;
-  /// Bytes of frames that were tried in this search without success.
+  /// Bytes of frames that this search has tried without success.
   std::uint64_t tried_ = 0;
   std::uint64_t skipped_ = 0;
   std::optional<FrameError> failed_;
 };
 
-/// When and how hard to compress what is sent. Level 1 suits lists; what does not become shorter is
-/// sent plain.
+/// Threshold and level of the compression of sent frames. Level 1 suits lists. Data that does not
+/// shrink is sent uncompressed.
 struct Gzip {
-  /// Least length of the data that is compressed, in bytes.
+  /// Least length of data to compress, in bytes.
   std::size_t from_bytes = 1024;
   /// 1 (fast) to 9 (small).
   int level = 1;
 };
 
-/// Writes frames behind the end of a buffer.
+/// Appends frames to a buffer.
 class Encoder {
  public:
-  /// Compresses nothing; frames may be as long as the protocol's default limit. The protocol has to
-  /// outlive it.
+  /// Creates an encoder without compression and with the default frame limit of the protocol. The
+  /// protocol must outlive the encoder.
   explicit Encoder(const Protocol& protocol);
 
-  /// Compresses as `gzip` says, or not at all.
+  /// Sets the compression; unset turns it off.
   void set_gzip(std::optional<Gzip> gzip);
-  /// Longest frame to be written, header included, in bytes.
+  /// Sets the longest frame to write, including the header, in bytes.
   void set_frame_bytes(std::uint32_t limit) { frame_bytes_ = limit; }
 
-  /// Appends a frame with this data. If it is too long, `out` is as before.
+  /// Appends a frame with this data. Leaves `out` unchanged if the frame would be too long.
   [[nodiscard]] Result<Done, FrameError> append(std::string& out, FrameId id,
                                                 std::string_view data);
 
@@ -137,9 +141,9 @@ class Encoder {
 
 namespace detail {
 
-/// Reads a header from the start of bytes that are long enough.
+/// Reads a header from the start of `bytes`, which must be long enough.
 [[nodiscard]] Header read_header(const Protocol& protocol, std::string_view bytes);
-/// The total length of the frame that starts the bytes, as soon as it has arrived.
+/// Returns the total length of the first frame, once that field has arrived.
 [[nodiscard]] std::optional<std::uint32_t> peek_total_length(const HeaderLayout& layout,
                                                              std::string_view bytes);
 /// Appends a header.

@@ -1,4 +1,4 @@
-// Gzip members, with the state of zlib kept for the next one.
+// Gzip members. The zlib state is reused from member to member.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ class Deflater {
   Deflater& operator=(Deflater&&) noexcept;
   ~Deflater();
 
-  /// Replaces `out` by the member of `data`, unless that is not shorter than `data`: then `false`,
-  /// and `out` holds nothing of use.
+  /// Replaces `out` by `data` as a gzip member. Returns `false` if that is not shorter than `data`;
+  /// the content of `out` is undefined then.
   [[nodiscard]] bool member(std::string_view data, std::string& out);
 
  private:
@@ -26,7 +26,7 @@ class Deflater {
   std::unique_ptr<State> state_;
 };
 
-/// What has come of inflating.
+/// The outcome of a decompression.
 enum class Inflated {
   Whole,    ///< One intact member of the announced length.
   Damaged,  ///< Not one intact member.
@@ -41,8 +41,8 @@ class Inflater {
   Inflater& operator=(Inflater&&) noexcept;
   ~Inflater();
 
-  /// Replaces `out` by the content of `member`, which has to be exactly `plain` bytes long. Memory
-  /// grows with what really comes out, and never beyond `plain` bytes.
+  /// Replaces `out` by the content of `member`, which must be exactly `plain` bytes long. Memory
+  /// grows only with the actual output, up to `plain` bytes.
   [[nodiscard]] Inflated inflate(std::string_view member, std::size_t plain, std::string& out);
 
  private:

@@ -1,4 +1,4 @@
-// JSON as it is kept where no type knows it: as its text, exactly.
+// Untyped JSON, kept exactly as its text.
 #pragma once
 
 #include <cstddef>
@@ -16,37 +16,37 @@
 
 namespace fc_runtime {
 
-/// Bytes, as those that travel as base64.
+/// Bytes, as sent in base64.
 using Bytes = std::vector<std::uint8_t>;
 
-/// What reading one text may cost.
+/// Limits for reading one JSON text.
 struct Allowance {
-  /// Levels of nesting.
+  /// Deepest nesting.
   std::size_t depth = 64;
-  /// Keys of objects and items of lists, those of all levels together.
+  /// Most keys of objects and items of lists, over all levels.
   std::size_t values = std::size_t{1} << 20U;
-  /// Memory for the items of lists, those of all levels together, in bytes.
+  /// Most memory for the items of lists, over all levels, in bytes.
   std::size_t list_bytes = std::size_t{32} << 20U;
 };
 
-/// A JSON value, kept byte for byte: numbers keep all their digits, strings their escapes, and white
-/// space stays. Compared by its text.
+/// A JSON value, kept byte for byte: digits, escapes and white space are unchanged. Comparison is
+/// by text.
 class Json {
  public:
   /// `null`.
   Json() : text_("null") {}
-  /// Checks a text. White space around it is dropped.
+  /// Parses a text. White space around the value is dropped.
   static Result<Json, BodyError> parse(std::string_view text);
-  /// A bool.
+  /// Returns a bool.
   static Json boolean(bool value);
-  /// An integer.
+  /// Returns an integer.
   static Json integer(std::int64_t value);
-  /// A float; `null` for what JSON has no number for.
+  /// Returns a float, or `null` if JSON cannot represent it.
   static Json number(double value);
-  /// A text.
+  /// Returns a string.
   static Json string(std::string_view value);
 
-  /// Its text.
+  /// The JSON text.
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
 
   friend bool operator==(const Json& left, const Json& right) { return left.text_ == right.text_; }
@@ -60,23 +60,23 @@ class Json {
   std::string text_;
 };
 
-/// The keys of an object that its type does not know, in the order in which they came, with
-/// duplicates. Keys and values are kept byte for byte, and compared so; white space between them is
-/// dropped. Kept as one text, so that they cost no more bytes than they were sent with.
+/// The unknown keys of an object, in the order received, with duplicates. Keys and values are kept
+/// and compared byte for byte; white space between them is dropped. One string holds them all, so
+/// that they take no more memory than on the wire.
 class Extra {
  public:
-  /// Whether there are none.
+  /// Returns `true` if there are no keys.
   [[nodiscard]] bool empty() const noexcept { return text_.empty(); }
-  /// How many there are. Takes a pass over the text.
+  /// Returns the number of keys. Scans the text.
   [[nodiscard]] std::size_t size() const;
-  /// Keys and values in order.
+  /// Returns the keys and values in order.
   [[nodiscard]] std::vector<std::pair<std::string, Json>> members() const;
-  /// The value of a key; of its last occurrence if it came more than once.
+  /// Returns the value of a key, or the last one of a repeated key.
   [[nodiscard]] std::optional<Json> get(std::string_view key) const;
-  /// Sets a key, in place of all its former values. A key of the message's own belongs into its
-  /// field: here it would be sent twice.
+  /// Sets a key and removes all its previous values. Set the known keys of a message in its fields;
+  /// here they would be sent twice.
   void set(std::string_view key, const Json& value);
-  /// Takes a key out, all of its values.
+  /// Removes all values of a key.
   void erase(std::string_view key);
 
   friend bool operator==(const Extra& left, const Extra& right) {
@@ -87,11 +87,11 @@ class Extra {
  private:
   friend class Reader;
   friend class Writer;
-  /// Appends the texts of a key, with its quotes, and of its value.
+  /// Appends a key, as quoted text, and the text of its value.
   void append(std::string_view key, std::string_view value);
   /// Replaces all values of a key by one, or removes them if `value` is null.
   void replace(std::string_view key, const Json* value);
-  /// The members as they are written, each with a comma in front.
+  /// The members as sent, each with a leading comma.
   std::string text_;
 };
 

@@ -1,4 +1,4 @@
-// What can be done with any message or enum of a protocol.
+// Functions for any message or enum of a protocol.
 #pragma once
 
 #include <iosfwd>
@@ -19,35 +19,34 @@ class Field;
 class Reader;
 class Writer;
 
-/// The keys of a required field, its own first.
+/// The keys of each required field, the main key first.
 using RequiredKeys = std::vector<std::vector<std::string_view>>;
 
-/// Reads keys that are next to a message's own in the same object, as those of an envelope.
+/// Reads additional keys in the object of a message, such as those of an envelope.
 class Beside {
  public:
   Beside() = default;
   Beside(const Beside&) = delete;
   Beside& operator=(const Beside&) = delete;
   virtual ~Beside() = default;
-  /// Reads the value of a key that is its own, and says in `taken` whether it is.
+  /// Reads the value if the key is one of the additional ones. `taken` returns `true` then.
   [[nodiscard]] virtual bool read(std::string_view key, Reader& reader, bool& taken) = 0;
 };
 
-/// A message whose field contradicts the condition under which it is there.
+/// A conditional field that is missing, or present although its condition does not hold.
 struct ConditionError {
-  /// The wire keys down to the field, such as `data[0].itemInfo`.
+  /// The wire path of the field, such as `data[0].itemInfo`.
   std::string path;
-  /// Whether it is missing, or there without being asked for.
+  /// `true` for a missing field, `false` for a superfluous one.
   bool is_missing = false;
-  /// When it is sent, such as "when `stationType` is 6".
+  /// The condition of the field, such as "when `stationType` is 6".
   std::string condition;
 };
 
 /// The error as one line.
 [[nodiscard]] std::string to_string(const ConditionError& error);
 
-/// How a type is read and written. Its functions are compiled once for each type, beside the fields
-/// that the type names; nobody needs to call them by hand.
+/// Reads and writes a type. Generated code instantiates it once per type; users do not call it.
 template <class T>
 struct Codec {
   static bool read(Reader& reader, T& out);
@@ -62,7 +61,7 @@ struct Codec {
   static std::string_view example();
 };
 
-/// How an enum is read and written; as `Codec`, compiled once for each.
+/// Reads and writes an enum. Instantiated once per enum, like `Codec`.
 template <class T>
 struct EnumCodec {
   static bool read(Reader& reader, const Field& field, T& out);
@@ -70,20 +69,20 @@ struct EnumCodec {
   static void print(std::ostream& out, const T& value);
 };
 
-/// Reads a text as a message.
+/// Reads a message from JSON.
 template <class T>
 Result<T, BodyError> from_json(std::string_view text, const Allowance& allowance = {});
 
-/// Writes a message as a text, if it keeps its own constraints.
+/// Writes a message as JSON, if it satisfies its constraints.
 template <class T>
 Result<std::string, BodyError> to_json(const T& message);
 
-/// The spec's example of a message.
+/// Returns the example of a message in the spec.
 template <class T>
 [[nodiscard]] T example();
 
-/// Whether each field of a message that is there only under a condition is there exactly then. What a
-/// peer sends is taken as it is; ask this of what you make.
+/// Checks that each conditional field is present exactly if its condition holds. The runtime does
+/// not check this in received messages. Use it for messages that you create.
 template <class T>
 [[nodiscard]] std::optional<ConditionError> check_conditions(const T& message) {
   return Codec<T>::conditions(message);
@@ -93,7 +92,8 @@ namespace detail {
 
 using ReadInto = bool (*)(Reader&, void*, Beside*);
 
-/// Reads a whole text: UTF-8, one object, nothing around it. That it is not JSON goes before all else.
+/// Reads a complete text: UTF-8 and exactly one object. Invalid JSON takes precedence over all
+/// other errors.
 [[nodiscard]] bool read_object(std::string_view text, const Allowance& allowance, ReadInto read,
                                void* out, Beside* beside, BodyError& error);
 
@@ -137,16 +137,16 @@ T example() {
   return from_json<T>(Codec<T>::example()).value_or(T());
 }
 
-/// A type of a protocol as data, for what deals with messages of any type.
+/// A type of a protocol as data, for code that handles messages of any type.
 struct TypeInfo {
   /// Its name in the spec.
   std::string_view name;
-  /// The spec's example of it, as JSON.
+  /// The example in the spec, as JSON.
   std::string_view example;
-  /// Reads a text as the type, with what is next to it, and writes it again.
+  /// Reads a text as the type, with additional keys, and writes it again.
   Result<std::string, BodyError> (*transcode)(std::string_view text, const Allowance& allowance,
                                               Beside* beside);
-  /// Reads a text as the type, and says what is wrong with it.
+  /// Reads a text as the type and returns the error, if any.
   std::optional<BodyError> (*check)(std::string_view text, const Allowance& allowance,
                                     Beside* beside);
 };
@@ -172,7 +172,7 @@ std::optional<BodyError> check(std::string_view text, const Allowance& allowance
 
 }  // namespace detail
 
-/// A type as data.
+/// Returns a type as data.
 template <class T>
 [[nodiscard]] TypeInfo type_info() {
   return {Codec<T>::name(), Codec<T>::example(), detail::transcode<T>, detail::check<T>};

@@ -1,26 +1,27 @@
-// What ties a request to its command, and a report to its code; the generated code specialises it.
+// Traits of requests and reports. The generated code specializes them.
 #pragma once
 
 namespace fc_runtime {
 
-/// What a command does to the peer.
+/// The effect of a command on the peer.
 enum class Effect {
-  Read,     ///< Only asks.
-  Config,   ///< Changes what the peer knows or how it behaves.
-  Motion,   ///< Sets something in motion.
-  Unknown,  ///< Nobody knows: treated as what sets something in motion.
+  Read,     ///< Only queries.
+  Config,   ///< Changes the data or configuration of the peer.
+  Motion,   ///< Moves the robot.
+  Unknown,  ///< Unknown. Treated like `Motion`.
 };
 
-/// A request: `Response`, `code`, `name`, `effect`.
+/// Traits of a request: `Response`, `code`, `name`, `effect`.
 template <class Request>
 struct Command;
 
-/// A report: `code`, `name`; `has_state`, `is_end`, `is_failure` of a report, and `is_in_order` of one
-/// after another.
+/// Traits of a report: `code` and `name`. `has_state`, `is_end` and `is_failure` test one report;
+/// `is_in_order` tests it against the previous one.
 template <class Message>
 struct Report;
 
-/// What ties a command to a report that it sets off: `is_of` says whether a report belongs to a call.
+/// Ties a command to the report of its process. `is_of` returns `true` if a report belongs to a
+/// call.
 template <class Request, class Message>
 struct SetsOff;
 

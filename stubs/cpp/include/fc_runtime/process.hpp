@@ -1,4 +1,4 @@
-// Ways to fields inside messages; for generated code.
+// Access to fields inside messages; for generated code.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace fc_runtime::detail {
 
-/// A member of what is held; null where that is not there, or the member is absent.
+/// Returns a member of `holder`, or null if the holder or the member is absent.
 template <class Holder, class Member>
 const Member* at(const Holder* holder, Member Holder::*member) {
   return holder == nullptr ? nullptr : &(holder->*member);
@@ -25,7 +25,7 @@ const Member* at(const Holder* holder, std::optional<Member> Holder::*member) {
   return &*(holder->*member);
 }
 
-/// Whether two values may be the same: what either does not say cannot tell them apart.
+/// Returns `true` unless both values are present and differ.
 template <class Left, class Right>
 bool may_be_same(const Left* left, const Right* right) {
   if (left == nullptr || right == nullptr) return true;
@@ -36,7 +36,7 @@ bool may_be_same(const Left* left, const Right* right) {
   }
 }
 
-/// Whether something is there, and is so.
+/// Returns `true` if a value is present and passes a test.
 template <class Value, class Test>
 bool holds(const Value* value, const Test& test) {
   return value != nullptr && test(*value);

@@ -1,4 +1,4 @@
-// What a generated protocol tells the runtime: its header, envelope, numbers and operations. The
+// The protocol as data: header, envelope, numbers and operations. Generated code defines it; the
 // runtime itself contains no number of a protocol.
 #pragma once
 
@@ -18,28 +18,28 @@
 
 namespace fc_runtime {
 
-/// What a field of the header is for.
+/// The role of a field of the header.
 enum class HeaderRole {
-  Head,         ///< Bytes that open a frame.
+  Head,         ///< First bytes of a frame.
   Kind,         ///< Kind of the data.
   Code,         ///< Command code.
   Id,           ///< Message id.
-  Encoding,     ///< How the data is packed.
-  TotalLength,  ///< Length of the frame, header included.
+  Encoding,     ///< Encoding of the data.
+  TotalLength,  ///< Length of the frame, including the header.
   PlainLength,  ///< Length of the data before compression.
   Digest,       ///< Digest of the data as sent.
-  Fixed,        ///< Sent with a fixed value, and not looked at.
+  Fixed,        ///< Sent with a fixed value, ignored when received.
 };
 
 /// A field of the header.
 struct HeaderField {
-  /// What it is for.
+  /// The role of the field.
   HeaderRole role = HeaderRole::Fixed;
-  /// Its first byte.
+  /// The offset of the field, in bytes.
   std::size_t offset = 0;
-  /// Its number of bytes.
+  /// The size of the field, in bytes.
   std::size_t size = 0;
-  /// What a fixed one is sent with.
+  /// The value of a fixed field.
   std::uint64_t value = 0;
 };
 
@@ -47,139 +47,137 @@ struct HeaderField {
 struct HeaderLayout {
   /// Length in bytes.
   std::size_t length = 0;
-  /// Whether integers have their most significant byte first.
+  /// `true` for integers with the most significant byte first.
   bool big_endian = true;
-  /// Its fields.
+  /// The fields of the header.
   std::vector<HeaderField> fields;
-  /// How the data is digested.
+  /// The digest of the data.
   DigestAlgorithm digest = DigestAlgorithm::None;
 
-  /// The field with a role; null if the header has none.
+  /// Returns the field with a role, or null if the header has none.
   [[nodiscard]] const HeaderField* find(HeaderRole role) const noexcept;
-  /// Largest message id.
+  /// Returns the largest message id.
   [[nodiscard]] std::uint32_t id_max() const noexcept;
 };
 
-/// What a key of an envelope holds.
+/// The role of a key of an envelope.
 enum class EnvelopeRole {
-  Time,        ///< When the message was made, in milliseconds since 1970.
+  Time,        ///< Creation time of the message, in milliseconds since 1970.
   ResultCode,  ///< The result code of a response.
-  ResultText,  ///< The text beside it.
+  ResultText,  ///< The result text of a response.
 };
 
-/// A key that is next to a message's own.
+/// An envelope key, in the same object as the keys of the message.
 struct EnvelopeKey {
-  /// What it holds.
+  /// The role of the key.
   EnvelopeRole role = EnvelopeRole::Time;
-  /// How it travels.
+  /// The wire format of the value.
   Field field;
-  /// Whether it may be absent.
+  /// `true` if the key may be absent.
   bool is_optional = true;
 };
 
-/// A result code and the text sent beside it.
+/// A result code and its text.
 struct ResultText {
-  /// Code.
   std::int64_t code = 0;
-  /// Text.
   std::string_view text;
 };
 
-/// Results that the runtime itself answers with.
+/// The results that the runtime itself responds with.
 struct Results {
-  /// The call did what it should.
+  /// The call succeeded.
   ResultText success;
   /// Unknown command, reserved kind, wrong digest.
   ResultText protocol;
-  /// No answer from the handler in time.
+  /// The handler did not finish in time.
   ResultText timeout;
-  /// A body that does not read or breaks a constraint.
+  /// The body cannot be read or breaks a constraint.
   ResultText invalid;
-  /// A message older than the configured age.
+  /// The message is older than the configured age.
   ResultText expired;
 };
 
-/// How the acknowledgement of a report is awaited.
+/// Timeout and retries for the acknowledgement of a report.
 struct AckPolicy {
-  /// How long to wait before the report is sent again.
+  /// Wait before the report is sent again.
   std::chrono::milliseconds timeout{2000};
-  /// How often to send it again before giving up.
+  /// Number of times that the report is sent again.
   std::uint32_t retries = 3;
 };
 
-/// Bounds of everything that grows with what a peer sends.
+/// Limits of everything that grows with the data from a peer.
 struct Limits {
-  /// Longest frame, header included, in bytes.
+  /// Longest frame, including the header, in bytes.
   std::uint32_t frame_bytes = 16U << 20U;
-  /// Longest data after decompression, in bytes.
+  /// Longest decompressed data, in bytes.
   std::uint32_t inflated_bytes = 64U << 20U;
-  /// Most bytes that one byte of compressed data may become, where more than `inflate_free` come
-  /// out. For JSON only: a picture may well be blank.
+  /// Largest compression ratio of data above `inflate_free` bytes. Applies to JSON only: a picture
+  /// may be blank.
   std::uint32_t inflate_ratio = 256;
   /// Deepest nesting of a JSON body.
   std::size_t json_depth = Allowance{}.depth;
-  /// Most keys of objects and items of lists in a JSON body, those of all levels together.
+  /// Most keys of objects and items of lists in a JSON body, over all levels.
   std::size_t json_values = Allowance{}.values;
-  /// Most memory for the items of lists that are read from a JSON body, in bytes.
+  /// Most memory for the items of lists in a JSON body, in bytes.
   std::size_t json_list_bytes = Allowance{}.list_bytes;
-  /// Calls in flight on one connection.
+  /// Most calls in flight on one connection.
   std::size_t in_flight = 64;
-  /// Reports that wait for one receiver, or for one connection.
+  /// Most reports that wait for one receiver, or for one connection.
   std::size_t queued_reports = 64;
-  /// Connections at one server, per port.
+  /// Most connections to one server, per port.
   std::size_t connections = 64;
 
-  /// Data of so many bytes or fewer may have been compressed by any ratio.
+  /// The compression ratio is not limited up to this length of the data, in bytes.
   static constexpr std::uint32_t inflate_free = 1U << 20U;
 
-  /// What reading one body may cost.
+  /// Returns the limits for reading one body.
   [[nodiscard]] Allowance json() const noexcept {
     return {json_depth, json_values, json_list_bytes};
   }
 };
 
-/// Times and limits where the user sets none.
+/// Default times and limits.
 struct Defaults {
-  /// How long a call waits for its response.
+  /// Longest wait of a call for its response.
   std::chrono::milliseconds call_timeout{3000};
-  /// How long a handler may take before the peer is told.
+  /// Longest time of a handler, after which the peer gets a timeout.
   std::chrono::milliseconds handler_timeout{2500};
-  /// Oldest message that is still served; none for any age.
+  /// Greatest age of a message that is still handled. Unset: any age.
   std::optional<std::chrono::milliseconds> max_age;
   /// Acknowledgement of reports.
   AckPolicy ack;
-  /// Bounds of everything that grows with what a peer sends.
+  /// Limits of everything that grows with the data from a peer.
   Limits limits;
 };
 
-/// What an operation is.
+/// The kind of an operation.
 enum class OperationKind {
   Command,  ///< A request and its response.
   Report,   ///< A pushed message and its acknowledgement.
   Stream,   ///< Frames of raw bytes.
 };
 
-/// All that the runtime and tools need to know of an operation without its types.
+/// The untyped facts of an operation, for the runtime and tools.
 struct OperationInfo {
   /// Name in the spec.
   std::string_view name;
-  /// Command code; none while the spec has not given one.
+  /// Command code. Unset while the spec does not assign one.
   std::optional<std::uint16_t> code;
-  /// What it is.
+  /// The kind of the operation.
   OperationKind kind = OperationKind::Command;
-  /// What a command does to the peer.
+  /// The effect of a command on the peer.
   Effect effect = Effect::Unknown;
   /// Chinese title.
   std::string_view zh;
   /// English title.
   std::string_view en;
-  /// How a report is acknowledged; none for the protocol's default.
+  /// The acknowledgement policy of a report. Unset: the default of the protocol.
   std::optional<AckPolicy> ack;
-  /// After how long another report of the kind comes, where the spec says so.
+  /// The interval of periodic reports, if the spec specifies it.
   std::optional<std::chrono::milliseconds> interval;
-  /// Its request, or the body of a report; none for a stream.
+  /// The request, or the body of a report. Unset for a stream.
   std::optional<TypeInfo> request;
-  /// Its response, or the acknowledgement of a report.
+  /// The response, or the acknowledgement of a report.
   std::optional<TypeInfo> response;
 };
 
@@ -205,28 +203,28 @@ struct Protocol {
   std::uint8_t command_kind = 0;
   /// Kind of a report and of its acknowledgement.
   std::uint8_t report_kind = 0;
-  /// Kinds that are refused by name.
+  /// Kinds that the receiver refuses as reserved.
   std::vector<std::uint8_t> reserved_kinds;
-  /// Encoding of data sent as it is.
+  /// Encoding of uncompressed data.
   std::uint8_t plain_encoding = 0;
-  /// Encoding of data sent as one gzip member; none if nothing is compressed.
+  /// Encoding of data as one gzip member. Unset: no compression.
   std::optional<std::uint8_t> gzip_encoding;
-  /// Quirk: a received plain length of 0 is accepted on a frame that is not compressed.
+  /// Quirk: accepts a received plain length of 0 on an uncompressed frame.
   bool zero_plain_length = false;
-  /// Keys of requests and reports beside their own.
+  /// Envelope keys of requests and reports.
   std::vector<EnvelopeKey> request_envelope;
-  /// Keys of responses and acknowledgements beside their own.
+  /// Envelope keys of responses and acknowledgements.
   std::vector<EnvelopeKey> response_envelope;
-  /// Results that the runtime itself answers with.
+  /// The results that the runtime itself responds with.
   Results results;
-  /// Times and limits where the user sets none.
+  /// Default times and limits.
   Defaults defaults;
   /// Every operation.
   std::vector<OperationInfo> operations;
 
-  /// Whether responses carry a result code. If not, a response says that all went well.
+  /// Returns `true` if responses carry a result code. Otherwise every response means success.
   [[nodiscard]] bool has_result() const noexcept;
-  /// The operation with a kind and code; null if there is none.
+  /// Returns the operation with a kind and code, or null.
   [[nodiscard]] const OperationInfo* find(OperationKind kind, std::uint16_t code) const noexcept;
 };
 

@@ -1,4 +1,4 @@
-// What becomes of a report that a robot sends.
+// Outcomes and errors of reports that a robot sends.
 #pragma once
 
 #include <cstdint>
@@ -14,58 +14,58 @@
 
 namespace fc_runtime {
 
-/// Which connection of a robot; counted from 1, and never used again.
+/// The id of a connection to a robot. Ids count from 1 and are never reused.
 using ConnectionId = std::uint64_t;
 
-/// How a report ended at one app.
+/// The outcome of a report at one app.
 enum class AckOutcomeKind {
-  Acknowledged,  ///< The app has acknowledged it.
-  Refused,       ///< The app has answered with another result than success.
-  Invalid,       ///< The app has answered with something that is not an acknowledgement.
-  TimedOut,      ///< No acknowledgement has come, however often it was repeated.
-  Dropped,       ///< The app was so slow that the report gave way to newer ones.
+  Acknowledged,  ///< The app acknowledged the report.
+  Refused,       ///< The app responded with a result other than success.
+  Invalid,       ///< The response of the app is not an acknowledgement.
+  TimedOut,      ///< No acknowledgement arrived, in spite of all retries.
+  Dropped,       ///< The queue of a slow app was full, and newer reports took its place.
   Closed,        ///< The connection ended first.
 };
 
 /// The name of an outcome, the same in every language.
 [[nodiscard]] std::string_view name(AckOutcomeKind kind) noexcept;
 
-/// How a report ended at one app.
+/// The outcome of a report at one app.
 struct AckOutcome {
-  /// The app.
+  /// The connection of the app.
   ConnectionId connection = 0;
-  /// How it ended.
+  /// The kind of the outcome.
   AckOutcomeKind kind = AckOutcomeKind::Closed;
-  /// What the app said, for `Refused`.
+  /// The result of the app, for `Refused`.
   std::optional<Refusal> refusal;
 };
 
-/// What is done when a report has ended at every app that it was sent to.
+/// Called when a report has ended at every app.
 using Pushed = std::function<void(std::vector<AckOutcome>)>;
 
-/// Why a report or stream was not even queued.
+/// The reason why a report or stream was not queued.
 enum class PushErrorKind {
-  Invalid,       ///< It breaks one of its own constraints.
-  Frame,         ///< It does not fit into a frame.
-  NoConnection,  ///< There is no such connection any more; for a stream: no data connection.
-  Ambiguous,     ///< Several apps share the address, and nothing tells whose data connection it is.
+  Invalid,       ///< The report breaks one of its constraints.
+  Frame,         ///< The data does not fit into a frame.
+  NoConnection,  ///< The connection is closed; for a stream: no data connection is open.
+  Ambiguous,     ///< Several apps share the address: the data connection matches none of them.
 };
 
 /// The name of a kind, the same in every language.
 [[nodiscard]] std::string_view name(PushErrorKind kind) noexcept;
 
-/// Why a report or stream was not even queued.
+/// The reason why a report or stream was not queued.
 struct PushError {
-  /// Why.
+  /// The kind of the error.
   PushErrorKind kind = PushErrorKind::NoConnection;
-  /// What is wrong with it, for `Invalid`.
+  /// The error of the body, for `Invalid`.
   std::optional<BodyError> body;
 };
 
 /// The error as one line.
 [[nodiscard]] std::string to_string(const PushError& error);
 
-/// What a report has come to at each app that it was sent to.
+/// The outcome of a report at each app, or the error.
 using Acknowledged = Result<std::vector<AckOutcome>, PushError>;
 
 }  // namespace fc_runtime

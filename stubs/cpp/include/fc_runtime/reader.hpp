@@ -13,8 +13,8 @@
 
 namespace fc_runtime {
 
-/// A pass over one text. Every function that reads says whether it went well; if it did not, `error()`
-/// says why, and nothing else is to be read.
+/// Reads one text in a single pass. The reading functions return `false` on an error. Then
+/// `error()` describes it, and no further reads are allowed.
 class Reader {
  public:
   Reader(std::string_view text, const Allowance& allowance)
@@ -23,7 +23,7 @@ class Reader {
         values_(allowance.values),
         lists_(allowance.list_bytes) {}
 
-  /// The next character that is not white space; 0 at the end.
+  /// Returns the next character other than white space, or 0 at the end.
   char peek() {
     while (at_ < text_.size()) {
       const char next = text_[at_];
@@ -34,35 +34,35 @@ class Reader {
   }
 
   [[nodiscard]] std::size_t offset() const { return at_; }
-  /// The text from a place on to where the reader stands.
+  /// Returns the text from `start` to the current position.
   [[nodiscard]] std::string_view since(std::size_t start) const {
     return text_.substr(start, at_ - start);
   }
 
   // Objects and lists.
   [[nodiscard]] bool begin_object();
-  /// Whether the object ends here; then it has been left.
+  /// Returns `true` at the end of the object, and leaves it.
   [[nodiscard]] bool end_object();
-  /// Reads a key and its colon. The view holds until the next key or string is read.
+  /// Reads a key and its colon. The view is valid until the next key or string is read.
   [[nodiscard]] bool key(std::string_view& out);
-  /// The text of the last key, with its quotes and escapes.
+  /// The text of the last key, including quotes and escapes.
   [[nodiscard]] std::string_view raw_key() const { return raw_key_; }
-  /// What follows a value in an object, up to the next key or the brace.
+  /// Reads from the end of a value up to the next key or the closing brace.
   [[nodiscard]] bool end_value();
   [[nodiscard]] bool begin_list();
-  /// Whether the list ends here; only for an empty one.
+  /// Returns `true` if the list is empty, and leaves it. Call it only before the first item.
   [[nodiscard]] bool end_list();
-  /// Whether another item comes, in `more`; otherwise the list has been left.
+  /// Sets `more` if another item follows. Otherwise leaves the list.
   [[nodiscard]] bool next_item(bool& more);
-  /// Counts keys or items.
+  /// Counts keys or items against the limit.
   [[nodiscard]] bool count(std::size_t values);
-  /// Pays for the items of a list.
+  /// Counts the memory for items of a list against the limit.
   [[nodiscard]] bool pay(std::size_t bytes);
 
   // Values.
   [[nodiscard]] bool boolean(bool& out);
   [[nodiscard]] bool string(std::string& out);
-  /// A string that has no escapes is a view into the text, any other into a buffer of the reader.
+  /// Returns a view into the text, or into a buffer of the reader if the string has escapes.
   [[nodiscard]] bool text(std::string_view& out);
   [[nodiscard]] bool float64(double& out);
   [[nodiscard]] bool float32(float& out);
@@ -88,20 +88,20 @@ class Reader {
   [[nodiscard]] bool take_null();
   /// Reads `null`, `{}`, `[]` or `""` if it comes next.
   [[nodiscard]] bool take_empty();
-  /// Reads a value and forgets it.
+  /// Skips a value.
   [[nodiscard]] bool skip();
-  /// Reads the value of the last key, which is unknown, and keeps the text of both.
+  /// Reads the value of the last key and keeps the text of both as unknown.
   [[nodiscard]] bool keep(Extra& extra);
-  /// Nothing but white space is left.
+  /// Checks that only white space is left.
   [[nodiscard]] bool finish();
 
-  // Faults.
+  // Errors.
   bool fail(BodyErrorKind kind, std::size_t offset, std::string_view detail);
   bool fail_here(BodyErrorKind kind, std::string_view detail) { return fail(kind, at_, detail); }
-  /// The value that comes next is not of the kind that is wanted; or it is not JSON at all.
+  /// Fails because the next value has the wrong type, or is not JSON.
   bool unexpected(std::string_view wanted);
   bool bad_json(std::string_view detail) { return fail_here(BodyErrorKind::BadJson, detail); }
-  /// The fault as seen from the object or list around it; always false.
+  /// Prepends a key or index to the path of the error. Always returns `false`.
   bool in_key(std::string_view key);
   bool in_item(std::size_t index);
   [[nodiscard]] const BodyError& error() const { return error_; }
@@ -133,13 +133,13 @@ class Reader {
   BodyError error_;
 };
 
-/// Whether a character is one of the ten digits.
+/// Returns `true` for an ASCII digit.
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// Whether bytes are UTF-8.
+/// Returns `true` if `bytes` is UTF-8.
 [[nodiscard]] bool is_utf8(std::string_view bytes) noexcept;
 
-/// Whether a text is one JSON value within an allowance; if not, why.
+/// Returns `true` if a text is one JSON value within the limits. Otherwise sets `error`.
 [[nodiscard]] bool is_json(std::string_view text, const Allowance& allowance, BodyError& error);
 
 }  // namespace fc_runtime

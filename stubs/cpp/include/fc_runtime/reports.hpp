@@ -1,4 +1,4 @@
-// Reports on their way to the app: what waits for each of its receivers. Usable from any thread.
+// Queues of received reports, one per receiver. Any thread may use them.
 #pragma once
 
 #include <chrono>
@@ -22,51 +22,53 @@ struct RawReport {
   std::uint16_t code = 0;
   /// Message id.
   std::uint32_t id = 0;
-  /// The whole JSON text, envelope included.
+  /// The complete JSON text, including the envelope.
   std::string text;
 };
 
-/// What comes to who follows a process.
+/// An event for a follower of a process.
 struct ReportEvent {
-  /// What it is.
+  /// The kind of the event.
   enum class Kind {
     Report,     ///< A report.
-    Missed,     ///< Reports came for which there was no room.
-    Lost,       ///< The connection was lost; what was reported meanwhile is not known.
-    Connected,  ///< There is a connection again.
-    Closed,     ///< Nothing comes any more.
+    Missed,     ///< Reports arrived that did not fit into the queue.
+    Lost,       ///< The connection was lost. Later reports may be missing.
+    Connected,  ///< The connection is up again.
+    Closed,     ///< The connection is closed. The last event.
   };
   Kind kind = Kind::Closed;
   /// The report.
   RawReport report;
-  /// How many were missed.
+  /// Number of missed reports.
   std::uint64_t missed = 0;
-  /// Why the connection was lost.
+  /// The reason of the loss.
   Loss why;
 };
 
-/// The reports for one receiver, from its making on, in the order in which they came. A report is
-/// acknowledged when at least one receiver has it in its queue; while no receiver has room, or there
-/// is none, reports are not acknowledged, so that the robot sends them again.
+/// The reports for one receiver since its creation, in the order received.
+///
+/// The client acknowledges a report when at least one receiver has it in its queue. Without a
+/// receiver with room, it does not acknowledge, so that the robot sends the report again.
 class ReportQueue {
  public:
-  /// For reports of one code, or of any.
+  /// Creates a queue for reports with one code, or any.
   ReportQueue(std::optional<std::uint16_t> code, std::size_t limit, std::size_t bytes)
       : code_(code), limit_(limit), bytes_limit_(bytes) {}
 
-  /// The next report, if one is there.
+  /// Returns the next report, if one is queued.
   [[nodiscard]] std::optional<RawReport> try_next();
-  /// The next report; none if none has come in time, or if the connection is closed and none is left.
+  /// Returns the next report. Returns nothing after `wait`, or if the connection is closed and the
+  /// queue empty.
   [[nodiscard]] std::optional<RawReport> next(std::chrono::milliseconds wait);
-  /// The next report or what was in between; none if nothing has come in time.
+  /// Returns the next event, or nothing if none arrives within `wait`.
   [[nodiscard]] std::optional<ReportEvent> next_event(std::chrono::milliseconds wait);
-  /// How many reports were missed since this was last asked, because the queue was full while another
-  /// receiver took them.
+  /// Returns the number of missed reports since the last call. Reports are missed if this queue is
+  /// full while another receiver takes them.
   [[nodiscard]] std::uint64_t take_missed();
-  /// Whether the connection is closed and nothing is left.
+  /// Returns `true` if the connection is closed and the queue empty.
   [[nodiscard]] bool is_over() const;
 
-  // For the client.
+  // Called by the client.
   [[nodiscard]] bool wants(std::uint16_t code) const { return !code_ || *code_ == code; }
   [[nodiscard]] bool has_room(std::size_t bytes) const;
   void push(const RawReport& report);
@@ -76,7 +78,7 @@ class ReportQueue {
   void close();
 
  private:
-  /// What a receiver has not got between one report and the next.
+  /// The events between two reports.
   struct Before {
     std::uint64_t missed = 0;
     std::optional<Loss> lost;
@@ -99,15 +101,16 @@ class ReportQueue {
   std::uint64_t missed_ = 0;
 };
 
-/// All receivers of a connection. They keep their queues; who lets go of one receives no more.
+/// All receivers of a connection. Each receiver owns its queue; without an owner, it receives no
+/// more.
 class Receivers {
  public:
   Receivers(std::size_t limit, std::size_t bytes) : limit_(limit), bytes_(bytes) {}
 
-  /// One more, of reports of a code or of any.
+  /// Adds a receiver of reports with a code, or any.
   [[nodiscard]] std::shared_ptr<ReportQueue> enter(std::optional<std::uint16_t> code);
-  /// Gives a report to all that have room for it: acknowledge it. Says how many had none; nothing if
-  /// nobody has got it.
+  /// Queues a report at all receivers with room. Returns how many had none, or nothing if none took
+  /// it. A report that was taken must be acknowledged.
   [[nodiscard]] std::optional<std::uint64_t> push(const RawReport& report);
   void lost(const Loss& why);
   void connected();

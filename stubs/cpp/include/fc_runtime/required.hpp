@@ -6,10 +6,10 @@
 
 namespace fc_runtime {
 
-/// A required field of type `T`: a number, a bool, an enum, a string, bytes or JSON. It begins unset,
-/// and a message with an unset field is not sent: writing it fails with `missing_field`.
+/// A required field of type `T`: a number, a bool, an enum, a string, bytes or JSON. It starts
+/// unset. Writing a message with an unset field fails with `missing_field`.
 ///
-/// Assign a `T`, and use it like a `T`. In a template or `?:`, take its `value()`.
+/// Assign a `T`, and use it like a `T`. In a template or `?:`, use its `value()`.
 template <class T, bool = std::is_class_v<T>>
 class Required;
 
@@ -30,11 +30,11 @@ class Required<T, false> {
     return *this;
   }
 
-  /// Returns `true` once it has been given a value.
+  /// Returns `true` once the field has a value.
   [[nodiscard]] constexpr bool is_set() const noexcept { return is_set_; }
   /// The value; `T()` while it is unset.
   [[nodiscard]] constexpr const T& value() const noexcept { return value_; }
-  /// Sets it to `T()`, and returns that to be changed.
+  /// Sets the field to `T()` and returns it for changes.
   T& emplace() noexcept {
     *this = T();
     return value_;
@@ -45,7 +45,8 @@ class Required<T, false> {
   bool is_set_ = false;
 };
 
-/// A string, bytes, JSON, or an enum that is sent as a string. It is a `T` with all its members.
+/// A string, bytes, JSON, or an enum that is sent as a string. It derives from `T` and has its
+/// members.
 template <class T>
 class Required<T, true> : public T {
   template <class U>
@@ -65,11 +66,11 @@ class Required<T, true> : public T {
     return *this;
   }
 
-  /// Returns `true` once it has been given a value, by assignment or by a member of `T`.
+  /// Returns `true` once the field has a value, by assignment or by a member of `T`.
   [[nodiscard]] bool is_set() const { return is_set_ || !(value() == T()); }
   /// The value; `T()` while it is unset.
   [[nodiscard]] const T& value() const noexcept { return *this; }
-  /// Sets it to `T()`, and returns that to be changed.
+  /// Sets the field to `T()` and returns it for changes.
   T& emplace() { return *this = T(); }
 
  private:

@@ -1,4 +1,4 @@
-// What a call has come to: a value or an error, without exceptions.
+// A value or an error, without exceptions.
 #pragma once
 
 #include <cstdlib>
@@ -11,10 +11,10 @@
 
 namespace fc_runtime {
 
-/// Nothing to say but that it worked: `Result<Done, E>`.
+/// The value of a success without data: `Result<Done, E>`.
 struct Done {};
 
-/// A value, or why there is none. Ask before you look: `if (result) use(*result);`.
+/// A value or an error. Test it before you access the value: `if (result) use(*result);`.
 template <class T, class E>
 class [[nodiscard]] Result {
   static_assert(!std::is_same_v<T, E>, "a value and an error have different types");
@@ -28,25 +28,25 @@ class [[nodiscard]] Result {
   Result(E error) : state_(std::in_place_index<1>, std::move(error)) {}
   // NOLINTEND(google-explicit-constructor)
 
-  /// Whether there is a value.
+  /// Returns `true` if there is a value.
   [[nodiscard]] bool has_value() const noexcept { return state_.index() == 0; }
   explicit operator bool() const noexcept { return has_value(); }
 
-  /// The value. There has to be one.
+  /// The value. Aborts if there is none.
   [[nodiscard]] T& operator*() & { return *held(); }
   [[nodiscard]] const T& operator*() const& { return *held(); }
   [[nodiscard]] T&& operator*() && { return std::move(*held()); }
   [[nodiscard]] T* operator->() { return held(); }
   [[nodiscard]] const T* operator->() const { return held(); }
 
-  /// Why there is no value. There has to be none.
+  /// The error. Aborts if there is a value.
   [[nodiscard]] const E& error() const& { return *fault(); }
   [[nodiscard]] E&& error() && { return std::move(*fault()); }
 
-  /// The value, or `other` in its place.
+  /// Returns the value, or `other` if there is none.
   [[nodiscard]] T value_or(T other) const& { return has_value() ? **this : std::move(other); }
 
-  /// The value. Without one, throws a `std::runtime_error` with the error's text.
+  /// Returns the value. Without one, throws a `std::runtime_error` with the text of the error.
   T& value_or_throw() & {
     if (!has_value()) throw std::runtime_error(to_string(error()));
     return **this;

@@ -1,5 +1,5 @@
-// A whole robot without sockets, threads and clocks: whoever has these tells it what happened and
-// what time it is, runs its handlers, and writes what it has to send.
+// A complete robot without sockets, threads and clocks. The caller feeds it events and the time,
+// runs the handlers, and sends the bytes that it produces.
 #pragma once
 
 #include <atomic>
@@ -24,9 +24,9 @@
 
 namespace fc_runtime {
 
-/// What a robot has seen since it was started.
+/// The counters of a robot since its start.
 struct RobotCounters {
-  Count connections;            ///< Connections taken.
+  Count connections;            ///< Connections accepted.
   Count connections_refused;    ///< Connections closed at once because there were too many.
   Count connections_forbidden;  ///< Connections closed at once because of their address.
   Count connections_displaced;  ///< Silent connections closed to make room for another.
@@ -35,35 +35,36 @@ struct RobotCounters {
   Count bytes_in;               ///< Bytes received.
   Count bytes_out;              ///< Bytes handed to connections to be sent.
   Count calls;                  ///< Commands that reached a handler.
-  Count calls_forbidden;        ///< Commands refused because of the address that they came from.
+  Count calls_forbidden;        ///< Commands refused because of the address of the app.
   Count calls_timed_out;        ///< Commands whose handler took too long.
-  Count calls_refused;          ///< Commands answered with another result than success.
+  Count calls_refused;          ///< Commands with a result other than success.
   Count handlers_panicked;      ///< Handlers that threw, or whose response could not be sent.
-  Count abandoned_reached;      ///< Commands refused: too many handlers continue without an app.
-  Count in_flight_reached;      ///< Times that a connection was not read: too many at work.
-  Count reports_acknowledged;   ///< Reports that an app has acknowledged.
-  Count reports_dropped;        ///< Reports that gave way to newer ones.
+  Count abandoned_reached;      ///< Commands refused: too many abandoned handlers.
+  Count in_flight_reached;      ///< Pauses of a connection: too many calls in flight.
+  Count reports_acknowledged;   ///< Reports that an app acknowledged.
+  Count reports_dropped;        ///< Reports dropped for newer ones.
   Count bad_frames;             ///< Frames that could not be read.
 };
 
-/// A command that has arrived, for the thread that runs its handler.
+/// A received command, for the thread that runs its handler.
 struct Request {
-  /// What to give back to `RobotCore::finish`.
+  /// The number of the handler, for `RobotCore::finish`.
   std::uint64_t handler = 0;
-  /// The connection that it came over.
+  /// The connection of the command.
   ConnectionId connection = 0;
   /// Code and message id.
   FrameId frame;
-  /// The whole JSON text, envelope included. Expires when the app waits no more.
+  /// The complete JSON text, including the envelope. Expires when the app stops waiting.
   std::weak_ptr<const std::string> text;
-  /// Settles whether the handler begins: the thread that sets it first lets it begin, or drops it if
-  /// that is the core, because the app waits no more. A dropped handler is not given to `finish`.
+  /// Decides between start and drop. The first thread to set it wins: the worker starts the
+  /// handler, the core drops it because the app stopped waiting. Do not call `finish` for a dropped
+  /// handler.
   std::shared_ptr<std::atomic<bool>> settled;
-  /// Set as soon as nobody waits for the answer any more.
+  /// Set when the app stops waiting for the response.
   std::shared_ptr<const std::atomic<bool>> abandoned;
 };
 
-/// What a robot needs to know, all of it filled in.
+/// The settings of a robot, all set.
 struct RobotSettings {
   Limits limits;                                    ///< Limits of frames, bodies and calls.
   std::chrono::milliseconds handler_timeout{2500};  ///< Longest time of a handler.
@@ -77,7 +78,7 @@ struct RobotSettings {
   std::optional<Gzip> gzip;
   bool verify_digest = true;
   bool resync = false;
-  /// Whether commands that the spec does not know have handlers as well; if not, they are refused.
+  /// Hands commands that the spec does not define to handlers. By default they are refused.
   bool hands_on_unknown = false;
 };
 
@@ -90,7 +91,7 @@ struct Push {
   Pushed done;
 };
 
-/// A report that waits for one app, or is in flight to it.
+/// A report that is queued for one app, or in flight to it.
 struct Queued {
   std::uint16_t code = 0;
   AckPolicy policy;
@@ -98,24 +99,24 @@ struct Queued {
   std::shared_ptr<Push> push;
 };
 
-/// What the connections of a robot have in common.
+/// The state shared by the connections of a robot.
 struct RobotShared {
   const Protocol* protocol = nullptr;
   RobotSettings settings;
   RobotCounters counters;
   std::function<void(Request)> begin;
   std::function<void(ConnectionId, FrameId, const FrameError&)> unsendable;
-  /// Memory is short: nothing is read.
+  /// `true` while memory is short: the robot reads nothing.
   bool is_pressed = false;
   /// Bytes of all requests in handlers, including those of closed connections.
   std::shared_ptr<std::atomic<std::size_t>> handled_bytes =
       std::make_shared<std::atomic<std::size_t>>(0);
   std::uint64_t next_handler = 1;
-  /// Handlers at work, each with its connection; those that nobody waits for are not here.
+  /// Running handlers with their connections, without abandoned ones.
   std::unordered_map<std::uint64_t, ConnectionId> handlers;
-  /// Handlers that have begun and whose app waits no more.
+  /// Number of started handlers whose app stopped waiting.
   std::size_t abandoned = 0;
-  /// Pushes that have ended, and not been told so yet.
+  /// Ended pushes whose callback is still to be called.
   std::vector<std::shared_ptr<Push>> ended;
 };
 
@@ -128,9 +129,9 @@ class RobotPeer {
   ~RobotPeer();
 
   void received(std::string_view bytes, Instant now);
-  /// The app has closed its half.
+  /// Notes that the app has closed its half.
   void deaf() { deaf_ = true; }
-  /// Reads no more, and ends once what has been begun is answered.
+  /// Stops reading, and ends after the responses to the current commands.
   void drain();
   void kill() { killed_ = true; }
   void finish(std::uint64_t handler, const Handled& handled, Instant now);
@@ -142,11 +143,11 @@ class RobotPeer {
   [[nodiscard]] bool is_done() const;
   [[nodiscard]] std::string take_out() { return std::exchange(out_, std::string()); }
   [[nodiscard]] bool is_heard() const { return heard_; }
-  /// Bytes that the app makes the robot hold.
+  /// Bytes that the robot holds for this app.
   [[nodiscard]] std::size_t held() const {
     return decoder_.pending() + handled_bytes_ + queued_bytes_ + unsent();
   }
-  /// Bytes of its requests that handlers have.
+  /// Bytes of its requests in handlers.
   [[nodiscard]] std::size_t handled_bytes() const { return handled_bytes_; }
 
  private:
@@ -169,21 +170,21 @@ class RobotPeer {
   void send_reports(Instant now);
   void end(Queued report, AckOutcomeKind kind, std::optional<Refusal> refusal = {});
   [[nodiscard]] std::size_t unsent() const { return out_.size() + unwritten_; }
-  /// When the connection is given up unless it goes on.
+  /// The time when the connection times out without progress.
   [[nodiscard]] std::optional<Instant> patience() const;
 
-  /// Whether the app may call a command, which nobody may know.
+  /// Returns `true` if the app may call a command. `command` is null for an unknown one.
   [[nodiscard]] bool may_call(const OperationInfo* command) const;
 
   RobotShared* shared_;
   ConnectionId id_;
-  /// What it may call; all where there are none.
+  /// The effects that the app may call; empty for all.
   std::vector<Effect> effects_;
   Decoder decoder_;
   Encoder encoder_;
   Session session_;
   std::map<std::uint64_t, AtWork> handlers_;
-  /// Bytes of their requests.
+  /// Bytes of the requests in `handlers_`.
   std::size_t handled_bytes_ = 0;
   std::deque<Queued> queue_;
   std::unordered_map<Token, Queued> in_flight_;
@@ -191,11 +192,11 @@ class RobotPeer {
   Token next_token_ = 1;
   std::string out_;
   std::size_t unwritten_ = 0;
-  /// When it was last told something.
+  /// The time of the latest event.
   Instant now_;
   Instant last_read_;
   Instant last_written_;
-  /// When the frame began that is arriving.
+  /// The arrival of the first bytes of the current frame.
   std::optional<Instant> begun_;
   bool heard_ = false;
   bool deaf_ = false;
@@ -205,64 +206,64 @@ class RobotPeer {
 
 }  // namespace detail
 
-/// A robot. Not to be used from two threads at once, but for its counters.
+/// A robot. It is not thread-safe, except for its counters.
 class RobotCore {
  public:
-  /// `begin` is called with each command that is to be handled. The protocol has to outlive it.
+  /// `begin` is called with each command to handle. The protocol must outlive the robot.
   RobotCore(const Protocol& protocol, const RobotSettings& settings,
             std::function<void(Request)> begin);
 
-  /// An app connects; none if there are too many. It may call what has these effects; none of them is
-  /// all of them.
+  /// Adds a connection, or returns nothing if there are too many. The app may call commands with
+  /// these effects; an empty list allows all.
   [[nodiscard]] std::optional<ConnectionId> connect(Instant now, std::vector<Effect> effects = {});
   /// Returns `true` while there is room for one more connection.
   [[nodiscard]] bool takes_connections() const;
-  /// Bytes have come over a connection.
+  /// Takes received bytes of a connection.
   void received(ConnectionId id, std::string_view bytes, Instant now);
-  /// The app has closed its half of a connection: what has been begun is still answered.
+  /// Notes that the app has closed its half. Commands that have begun still get their responses.
   void ended(ConnectionId id);
-  /// A connection is no more, broken or closed.
+  /// Removes a broken or closed connection.
   void closed(ConnectionId id);
-  /// The counters. The owner of the sockets counts connections that it closes itself.
+  /// The counters, for the owner of the sockets, which counts the connections that it closes.
   [[nodiscard]] RobotCounters& counting() { return shared_->counters; }
-  /// Is told of responses that do not fit into a frame.
+  /// Sets the callback for responses that do not fit into a frame.
   void set_unsendable(std::function<void(ConnectionId, FrameId, const FrameError&)> told) {
     shared_->unsendable = std::move(told);
   }
-  /// Memory is short, or no longer: while it is, no connection takes bytes.
+  /// Sets the memory pressure. Under pressure, no connection takes bytes.
   void set_pressed(bool is_pressed) { shared_->is_pressed = is_pressed; }
-  /// Bytes that a connection makes the robot hold.
+  /// Bytes that the robot holds for a connection.
   [[nodiscard]] std::size_t held(ConnectionId id) const;
-  /// Bytes of requests in handlers whose app waits no more. No connection counts them.
+  /// Bytes of requests in abandoned handlers. No connection counts them.
   [[nodiscard]] std::size_t held_for_nobody() const;
-  /// Returns `true` once a byte has come over a connection.
+  /// Returns `true` once a byte has arrived over a connection.
   [[nodiscard]] bool is_heard(ConnectionId id) const;
-  /// What a handler has come to.
+  /// Takes the outcome of a handler.
   void finish(std::uint64_t handler, const Handled& handled, Instant now);
-  /// Sends a report, a whole body, to every app connected or to one. `done` is called by `settle` once
-  /// it has ended at each. Says at how many apps it has been queued.
+  /// Sends a report with a complete body to one app, or to all. `settle` calls `done` when the
+  /// report has ended at each app. Returns the number of apps that have it in their queue.
   std::size_t push(std::uint16_t code, std::string body, std::optional<ConnectionId> to,
                    Pushed done, Instant now);
-  /// Begins to end: nothing more is read, what has been begun is answered, for so long at most.
+  /// Starts a shutdown: reads no more, and responds to the current commands within `grace`.
   void shutdown(std::chrono::milliseconds grace, Instant now);
-  /// Time has passed.
+  /// Advances the time.
   void advance(Instant now);
-  /// When `advance` is to be called at the latest.
+  /// The latest time for the next call of `advance`.
   [[nodiscard]] std::optional<Instant> next_due() const;
-  /// Calls what waits for reports that have ended.
+  /// Calls the callbacks of ended reports.
   void settle();
 
-  /// Whether a connection takes more bytes at this moment.
+  /// Returns `true` while a connection takes more bytes.
   [[nodiscard]] bool wants_bytes(ConnectionId id) const;
-  /// What is to be sent over a connection; from then on it is the caller's.
+  /// Returns the bytes to send over a connection, and forgets them.
   [[nodiscard]] std::string take_out(ConnectionId id);
-  /// How much of that is not written yet, in bytes.
+  /// Sets the number of bytes from `take_out` that are not written yet.
   void set_unwritten(ConnectionId id, std::size_t bytes, Instant now);
-  /// Whether a connection is to be closed.
+  /// Returns `true` if a connection must be closed.
   [[nodiscard]] bool is_done(ConnectionId id) const;
   /// All connections.
   [[nodiscard]] std::vector<ConnectionId> connections() const;
-  /// Whether a shutdown is over.
+  /// Returns `true` after a shutdown.
   [[nodiscard]] bool is_over() const;
   [[nodiscard]] const RobotCounters& counters() const { return shared_->counters; }
 
@@ -272,7 +273,7 @@ class RobotCore {
   std::unique_ptr<detail::RobotShared> shared_;
   std::map<ConnectionId, std::unique_ptr<detail::RobotPeer>> peers_;
   ConnectionId next_id_ = 1;
-  /// By when a shutdown is over.
+  /// The deadline of a shutdown.
   std::optional<Instant> over_by_;
   bool cut_off_ = false;
 };

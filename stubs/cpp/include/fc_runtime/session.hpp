@@ -1,5 +1,5 @@
-// The session: which answer belongs to which request, what is due, what has been seen before. No
-// sockets and no clocks: it is told what happened and what time it is.
+// The session matches responses with requests, finds due retries, and detects repeated reports. It
+// has no sockets and no clocks: the caller feeds it events and the time.
 #pragma once
 
 #include <chrono>
@@ -18,44 +18,42 @@
 
 namespace fc_runtime {
 
-/// A moment of a clock that never goes back.
+/// A time of a monotonic clock.
 using Instant = std::chrono::steady_clock::time_point;
 
-/// The caller's own word for a request in flight.
+/// A value of the caller that identifies a request in flight.
 using Token = std::uint64_t;
 
-/// What a frame that has arrived means.
+/// The meaning of a received frame.
 enum class Meaning {
-  Answer,    ///< The answer to a request in flight, which has ended with it.
-  Late,      ///< An answer that nobody waits for (any more): drop it.
-  Command,   ///< A command: handle it and answer.
-  Report,    ///< A report: hand it on, then say so with `handed_on`, and acknowledge it.
-  Repeated,  ///< A report that has been handed on already: acknowledge it again, nothing else.
+  Answer,    ///< The response to a request in flight, which ends with it.
+  Late,      ///< A response without a request in flight: drop it.
+  Command,   ///< A command: handle it and respond.
+  Report,    ///< A report: hand it on, call `handed_on`, and acknowledge it.
+  Repeated,  ///< A report that was handed on before: only acknowledge it again.
   Stream,    ///< Raw bytes.
 };
 
-/// A frame that has arrived.
+/// A received frame.
 struct Incoming {
-  /// What it means.
+  /// The meaning of the frame.
   Meaning meaning = Meaning::Late;
-  /// Of the request that it answers, where it answers one.
+  /// The token of the request, for `Answer`.
   Token token = 0;
 };
 
-/// What time has brought about for a request in flight.
+/// A request whose wait has ended.
 struct Due {
-  /// Whether to send it again, with the same id; otherwise it has ended without an answer.
+  /// `true`: send the request again with the same id. `false`: it has ended without a response.
   bool again = false;
-  /// The request.
   FrameId frame;
-  /// Its token.
   Token token = 0;
 };
 
 namespace detail {
 
-/// The table of requests in flight. Ids count on, and an id's low bits are its slot: an id whose slot
-/// is still taken is passed over, so that no two in flight are the same.
+/// The table of requests in flight. Ids count up, and the low bits of an id are its slot. An id
+/// with an occupied slot is skipped, so that all ids in flight differ.
 class Outgoing {
  public:
   Outgoing(std::size_t limit, std::uint32_t first_id, std::uint32_t id_max);
@@ -89,14 +87,13 @@ class Outgoing {
   std::size_t limit_;
   std::uint32_t next_id_;
   std::uint32_t id_max_;
-  /// When which id is due, earliest first; among them those of requests that have ended since.
+  /// The deadlines with their ids, earliest first. May contain requests that have ended.
   std::vector<Deadline> deadlines_;
 };
 
-/// A window over the last reports handed on. What has the same id and the same data is the same
-/// report, whenever it comes. What has only the same id is the same report if it comes soon and over
-/// the same connection; later, or over another one, it is another: a peer that restarts may use its
-/// ids again.
+/// A window over the last reports handed on. A report with the same id and data is a repetition at
+/// any time. A report with only the same id is a repetition if it arrives soon and over the same
+/// connection. Otherwise it is new: a restarted peer may reuse its ids.
 class Seen {
  public:
   Seen(std::size_t length, std::chrono::milliseconds age) : length_(length), age_(age) {}
@@ -110,7 +107,7 @@ class Seen {
     FrameId frame;
     std::optional<Sum> digest;
     std::uint64_t connection = 0;
-    /// When it last came.
+    /// The time of the latest arrival.
     Instant at;
   };
 
@@ -123,41 +120,41 @@ class Seen {
 
 }  // namespace detail
 
-/// The state of one peer's conversation with another. Every token given to `open` comes back exactly
-/// once: with the answer, as expired, as cancelled or by `end_if`.
+/// The state of the exchange with one peer. Every token given to `open` returns exactly once: with
+/// the response, as expired, as cancelled or by `end_if`.
 class Session {
  public:
-  /// Ids count on from `first_id`, and from 0 behind the largest. At most `limits.in_flight` requests
-  /// are in flight, and no more than half of all ids. Reports handed on are remembered for twice as
-  /// long as `ack` says that they may be repeated.
+  /// Ids count up from `first_id`, and continue at 0 after the largest. At most `limits.in_flight`
+  /// requests are in flight, and at most half of all ids. Reports are remembered for twice the
+  /// retry time of `ack`.
   Session(const Protocol& protocol, const Limits& limits, AckPolicy ack, std::uint32_t first_id);
 
-  /// Puts a request in flight and gives the id to send it with; none if too many are in flight.
+  /// Opens a request and returns its id, or nothing if too many are in flight.
   [[nodiscard]] std::optional<FrameId> open(std::uint8_t kind, std::uint16_t code, AckPolicy policy,
                                             Instant now, Token token) {
     return outgoing_.open(kind, code, policy, now, token);
   }
-  /// Says what a frame that has arrived means. By the digest of its data, reports are told apart that
-  /// came over different connections.
+  /// Returns the meaning of a received frame. The digest of its data distinguishes reports over
+  /// different connections.
   [[nodiscard]] Incoming receive(FrameId frame, const std::optional<Sum>& digest, Instant now);
-  /// Remembers that a report has been handed on.
+  /// Remembers a report that was handed on.
   void handed_on(FrameId report, const std::optional<Sum>& digest, Instant now) {
     seen_.insert(report, digest, now);
   }
-  /// Notes that what comes from now on comes over another connection.
+  /// Notes that the following frames arrive over a new connection.
   void reconnected() { seen_.reconnected(); }
-  /// Ends a request because nobody waits for its answer any more. A late answer will miss.
+  /// Cancels a request. A late response is then `Late`.
   std::optional<Token> cancel(FrameId request) { return outgoing_.end(request); }
-  /// What is due; call it until it gives none.
+  /// Returns the next due request. Call it until it returns nothing.
   [[nodiscard]] std::optional<Due> due(Instant now) { return outgoing_.due(now); }
-  /// Before this, nothing is due. May be earlier than the first deadline, never later.
+  /// The time before which no request is due. May be earlier than the first deadline.
   [[nodiscard]] std::optional<Instant> next_due() const { return outgoing_.earliest(); }
-  /// Ends every request in flight that `ends` says so of, as when the connection is lost.
+  /// Ends every request in flight for which `ends` returns `true`, such as after a loss.
   [[nodiscard]] std::vector<std::pair<FrameId, Token>> end_if(
       const std::function<bool(FrameId, Token)>& ends) {
     return outgoing_.end_if(ends);
   }
-  /// How many requests are in flight.
+  /// Number of requests in flight.
   [[nodiscard]] std::size_t in_flight() const noexcept { return outgoing_.size(); }
 
  private:
@@ -169,10 +166,11 @@ class Session {
 
 namespace detail {
 
-/// A wait that can be added to the time: a negative one is 0, and one too long for the clock a year.
+/// Returns a wait that can be added to the time: at least 0, and one year if the clock cannot hold
+/// it.
 [[nodiscard]] std::chrono::milliseconds bounded(std::chrono::milliseconds wait);
 
-/// The time `wait` after `now`, as far as the clock goes.
+/// Returns the time `wait` after `now`, limited by the clock.
 [[nodiscard]] Instant after(Instant now, std::chrono::milliseconds wait);
 
 }  // namespace detail

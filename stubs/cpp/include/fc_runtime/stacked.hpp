@@ -1,4 +1,4 @@
-// A robot that is put together of a part for each group of commands.
+// A robot composed of one part per group of commands.
 #pragma once
 
 #include "fc_runtime/message.hpp"
@@ -22,15 +22,15 @@ struct Stack<Base, First, Rest...> {
 
 }  // namespace detail
 
-/// `Base` with all of these parts, each derived from the next.
+/// `Base` with all parts. Each part derives from the next.
 template <class Base, template <class> class... Parts>
 using Stacked = typename detail::Stack<Base, Parts...>::Type;
 
-/// A robot whose parts refuse each command as not implemented.
+/// A robot that refuses each command as not implemented.
 template <class Robot, const Protocol& (*protocol)()>
 class Refusing : public Robot {
  protected:
-  /// Refuses it.
+  /// Refuses the command.
   template <class Request>
   [[nodiscard]] Replied<typename Command<Request>::Response> answer_(
       const Request& /*request*/) const {
@@ -38,15 +38,15 @@ class Refusing : public Robot {
   }
 };
 
-/// A robot whose parts answer each command with the spec's example. What sets something in motion, or
-/// may do so, is refused as not implemented unless the robot pretends to do it.
+/// A robot that responds to each command with the example in the spec. Commands with effect
+/// `Motion` or `Unknown` are refused as not implemented unless `pretend_motion_` is set.
 template <class Robot, const Protocol& (*protocol)()>
 class Exemplary : public Robot {
  protected:
-  /// Whether it pretends.
+  /// Responds to `Motion` and `Unknown` commands as well.
   bool pretend_motion_ = false;
 
-  /// Answers it, or refuses it.
+  /// Responds with the example, or refuses the command.
   template <class Request>
   [[nodiscard]] Replied<typename Command<Request>::Response> answer_(
       const Request& /*request*/) const {

@@ -19,56 +19,56 @@
 
 namespace fc_runtime {
 
-/// What a call comes to.
+/// The outcome of a call.
 template <class Response>
 using Called = Result<Response, CallError>;
 
-/// What a handler answers with.
+/// The outcome of a handler.
 template <class Response>
 using Replied = Result<Response, Refusal>;
 
-/// A handler's response that cannot be sent: it breaks the spec, or does not fit into a frame. `serve`
-/// throws it to the server, which answers the app and tells `ServerConfig::on_handler_error`.
+/// A response that cannot be sent: it breaks the spec, or does not fit into a frame. `serve` throws
+/// it to the server, which responds to the app and calls `ServerConfig::on_handler_error`.
 class UnsendableResponse : public std::exception {
  public:
   explicit UnsendableResponse(const BodyError& error) : text_(to_string(error)) {}
   explicit UnsendableResponse(const FrameError& error) : text_(to_string(error)) {}
 
-  /// The name of the error, and where it is. Quotes no value.
+  /// The name and path of the error. Quotes no value.
   [[nodiscard]] const char* what() const noexcept override { return text_.c_str(); }
 
  private:
   std::string text_;
 };
 
-/// What a handler knows beside the request.
+/// The context of a request, for its handler.
 struct Context {
-  /// The connection that the request came over.
+  /// The connection of the request.
   std::uint64_t connection = 0;
-  /// Its command code.
+  /// The command code of the request.
   std::uint16_t code = 0;
-  /// Its message id.
+  /// The message id of the request.
   std::uint32_t id = 0;
-  /// When it was made, in milliseconds since 1970, if it says so.
+  /// Creation time of the request, in milliseconds since 1970. Unset if the envelope has none.
   std::optional<std::int64_t> time_ms;
-  /// Whether nobody waits for the answer any more: look at it where the work takes long.
+  /// Set when the app stops waiting for the response. See `is_abandoned`.
   std::shared_ptr<const std::atomic<bool>> abandoned;
-  /// What reading the request may cost.
+  /// Limits for reading the request.
   Allowance allowance;
-  /// How old a request may be that is still served.
+  /// Greatest age of a request that is still handled.
   std::optional<std::chrono::milliseconds> max_age;
 
-  /// Whether nobody waits for the answer any more.
+  /// Returns `true` once the app has stopped waiting for the response. Check it in long handlers.
   [[nodiscard]] bool is_abandoned() const { return abandoned && abandoned->load(); }
 };
 
 namespace detail {
 
-/// What a response says has gone wrong, if it says so.
+/// Returns the refusal in a response, if any.
 [[nodiscard]] std::optional<CallError> refusal_of(const Protocol& protocol,
                                                   const Envelope& envelope);
 [[nodiscard]] CallError invalid(CallErrorKind kind, BodyError error);
-/// Whether a message is too old to be served, and if so the refusal.
+/// Returns the refusal if a message is too old.
 [[nodiscard]] std::optional<Refusal> expired(const Protocol& protocol,
                                              std::optional<std::chrono::milliseconds> max_age,
                                              const Envelope& envelope);
@@ -77,24 +77,24 @@ namespace detail {
 
 }  // namespace detail
 
-/// What a handler of commands without a type answers with: an object that has the keys of its own.
+/// The outcome of an untyped handler: an object with the keys of the response alone, or a refusal.
 using RawReplied = Result<Json, Refusal>;
-/// Handles a command without a type: the context, and its whole text, envelope included, unread.
+/// Handles an untyped command. `text` is the complete, unread text, including the envelope.
 using RawHandle = std::function<RawReplied(const Context& context, std::string_view text)>;
 
-/// Has a command without a type handled, and writes the response. Throws `UnsendableResponse`.
+/// Handles an untyped command and writes the response. Throws `UnsendableResponse`.
 [[nodiscard]] Result<std::string, Refusal> serve_raw(const Protocol& protocol, Context context,
                                                      std::string_view text,
                                                      const RawHandle& handle);
 
-/// The answer to a command whose handler has failed.
+/// The refusal of a command whose handler has failed.
 [[nodiscard]] Refusal handler_failed(const Protocol& protocol);
-/// A command that the spec does not know.
+/// The refusal of a command that the spec does not define.
 [[nodiscard]] Refusal unknown_command(const Protocol& protocol);
-/// A command of the spec that this robot does not carry out.
+/// The refusal of a command that the spec defines and this robot does not implement.
 [[nodiscard]] Refusal not_implemented(const Protocol& protocol);
 
-/// The body of a request or report made now.
+/// Returns the body of a request or report, with the current time.
 template <class T>
 Result<std::string, CallError> write_request(const Protocol& protocol, const T& message) {
   const Envelope envelope{unix_ms(), std::nullopt, std::nullopt};
@@ -103,7 +103,7 @@ Result<std::string, CallError> write_request(const Protocol& protocol, const T& 
   return *std::move(text);
 }
 
-/// A response, or why there is none.
+/// Reads a response.
 template <class T>
 Result<T, CallError> read_response(const Protocol& protocol, std::string_view text,
                                    const Allowance& allowance) {
@@ -116,7 +116,7 @@ Result<T, CallError> read_response(const Protocol& protocol, std::string_view te
   return *std::move(read->body);
 }
 
-/// A report as a typed message.
+/// Reads a report.
 template <class T>
 Result<T, BodyError> read_report(const Protocol& protocol, std::string_view text,
                                  const Allowance& allowance) {
@@ -125,7 +125,7 @@ Result<T, BodyError> read_report(const Protocol& protocol, std::string_view text
   return std::move(read->body);
 }
 
-/// Which of the errors that a command declares a call has failed with; none for any other.
+/// Returns the declared error of a command that a call failed with, or nothing for any other error.
 template <class Request>
 std::optional<typename Command<Request>::Error> declared(const CallError& error) {
   if (!error.refusal) return std::nullopt;
@@ -135,8 +135,8 @@ std::optional<typename Command<Request>::Error> declared(const CallError& error)
   return std::nullopt;
 }
 
-/// Reads a request, has it handled, and writes the response. `handle` takes the context and the
-/// request, and gives a `Result` of the response or a `Refusal`. Throws `UnsendableResponse`.
+/// Reads a request, runs its handler, and writes the response. `handle` takes the context and the
+/// request, and returns a `Result` of the response or a `Refusal`. Throws `UnsendableResponse`.
 template <class Request, class Response, class Handle>
 Result<std::string, Refusal> serve(const Protocol& protocol, Context context, std::string_view text,
                                    const Handle& handle) {

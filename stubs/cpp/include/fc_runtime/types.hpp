@@ -1,4 +1,4 @@
-// Lists of types, in which each group of a protocol names its requests and reports.
+// Lists of types: the requests and reports of each group of a protocol.
 #pragma once
 
 #include <type_traits>
@@ -6,11 +6,11 @@
 
 namespace fc_runtime {
 
-/// A list of types, with `End` behind the last.
+/// A list of types that ends with `End`.
 template <class... Each>
 struct Types {};
 
-/// The end of a list, which is none of its types: behind it a list can grow without a change of what stands there.
+/// The end marker of a list. With it, an added type does not change the line of the previous one.
 struct End {};
 
 namespace detail {
@@ -40,11 +40,11 @@ void visit_one(Visitor& visit) {
 
 }  // namespace detail
 
-/// A `std::variant` over the types of all these lists, in their order.
+/// A `std::variant` over the types of all these lists, in order.
 template <class... Lists>
 using VariantOf = typename detail::Joined<Types<>, Lists...>::Variant;
 
-/// Calls `visit` once for each type of a list, with a value of it.
+/// Calls `visit` with a value of each type of a list.
 template <class Visitor, class... Each>
 void visit_each(Visitor& visit, Types<Each...> /*list*/) {
   (detail::visit_one<Each>(visit), ...);

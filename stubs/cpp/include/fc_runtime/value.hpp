@@ -1,4 +1,4 @@
-// How a value of any type is read, and what a field demands of it. For codec.hpp.
+// Reads a value of any type and checks the constraints of its field. For codec.hpp.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,17 @@
 
 namespace fc_runtime {
 
-/// The fields of a message; the generated code specialises it. `each(visit, message)` names them all.
+/// The fields of a message. The generated code specializes it; `each(visit, message)` visits them
+/// all.
 template <class T>
 struct Fields;
 
 /// A value of an enum.
 template <class Wire>
 struct EnumValue {
-  /// The value that is sent.
+  /// The value on the wire.
   Wire wire;
-  /// Its name in code.
+  /// The name in code.
   std::string_view name;
   /// `true` for a final state.
   bool is_final = false;
@@ -36,7 +37,7 @@ struct EnumValue {
   bool is_error = false;
 };
 
-/// The values of an enum; the generated code specialises it.
+/// The values of an enum. The generated code specializes it.
 template <class T>
 struct Values;
 
@@ -57,7 +58,7 @@ struct IsChoice : std::false_type {};
 template <class... Ts>
 struct IsChoice<std::variant<Ts...>> : std::true_type {};
 
-/// Whether a class is an enum sent as a text: it has the known values as a nested enum.
+/// Detects an enum that is sent as a string: a class with a nested enum `Value`.
 template <class T, class = void>
 struct IsTextEnum : std::false_type {};
 template <class T>
@@ -74,7 +75,7 @@ constexpr bool is_number = std::is_arithmetic_v<T> && !std::is_same_v<T, bool>;
 bool read_quoted_text(Reader& reader, std::string& out, std::string_view wanted);
 bool read_zero_or_one(Reader& reader, bool& out);
 bool read_bool(Reader& reader, const Field& field, bool& out);
-/// The text of a number that travels in a string, ready to be read; `0x` made decimal.
+/// Reads the string of a quoted number. `out` is ready to be parsed; `0x` is converted to decimal.
 bool read_number_text(Reader& reader, const Field& field, std::string& out, std::size_t& start);
 [[nodiscard]] std::size_t characters(std::string_view text);
 [[nodiscard]] bool matches(std::string_view text, std::string_view pattern);
@@ -136,7 +137,8 @@ bool read_list(Reader& reader, const Field& field, std::vector<T>& out) {
   return true;
 }
 
-/// Finds, without reading it, the first variant whose required keys the next object has all.
+/// Finds the first variant whose required keys are all in the next object. Does not consume the
+/// object.
 bool choose(Reader& reader, const std::vector<RequiredKeys>& variants, std::size_t& chosen);
 
 template <class Choice, std::size_t... I>
@@ -190,7 +192,7 @@ bool read_value(Reader& reader, const Field& field, T& out) {
 
 // ---- constraints ----
 
-/// Why a value breaks a constraint of its field.
+/// The reason why a value breaks a constraint of its field.
 struct Breach {
   BodyErrorKind kind = BodyErrorKind::OutOfRange;
   std::string_view detail;
@@ -199,7 +201,7 @@ struct Breach {
 template <class T>
 bool keeps_items(const Field& field, const T& value, Breach& breach);
 
-/// Whether a value keeps the constraints of its field; an absent one does.
+/// Returns `true` if a value satisfies the constraints of its field. An absent value does.
 template <class T>
 bool keeps(const Field& field, const T& value, Breach& breach) {
   if constexpr (IsRequired<T>::value) {

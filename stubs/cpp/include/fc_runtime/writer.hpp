@@ -13,12 +13,13 @@
 
 namespace fc_runtime {
 
-/// The shortest decimal that reads as this number again, with a point or an exponent; otherwise `inf` or `nan` with its sign.
+/// Returns the shortest decimal that parses to the same number, with a point or an exponent.
+/// Otherwise returns `inf` or `nan` with its sign.
 [[nodiscard]] std::string float_text(double value);
-/// The same of a `float`, which takes fewer digits.
+/// Returns the same for a `float`, which takes fewer digits.
 [[nodiscard]] std::string float_text(float value);
 
-/// Appends JSON to a text. A value that breaks a constraint is noted, the first one only.
+/// Appends JSON to a text. Keeps only the first error.
 class Writer {
  public:
   explicit Writer(std::string& out) : out_(out) {}
@@ -39,11 +40,11 @@ class Writer {
   void float32(float value);
   void base64(std::string_view bytes);
   void json(const Json& value) { raw(value.text()); }
-  /// Keys that are not known, behind those that are; `first` if there are none of these.
+  /// Writes the unknown keys after the known ones. `first` is `true` if there are no known keys.
   void extra(const Extra& extra, bool first);
 
   void fail(BodyErrorKind kind, std::string_view detail);
-  /// What has been noted since is seen from the object or list around it.
+  /// Prepends a key or index to the path of the error.
   void in_key(std::string_view key);
   void in_item(std::size_t index);
   [[nodiscard]] bool has_failed() const { return failed_; }

@@ -1,4 +1,4 @@
-// The choice of a connection that gives way to a new one at the limit.
+// The choice of a connection to close for a new one at the limit.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace fc_runtime::detail {
 
-/// The connections of a port, older ones first, and their limits.
+/// The connections of a port, in order of age, and their limits.
 template <class Peer>
 class Crowd {
  public:
@@ -23,8 +23,8 @@ class Crowd {
     return peers_.size() < limit_ && from(address) < per_address_;
   }
 
-  /// The connection that gives way to one from an address: the oldest silent one from the address with
-  /// most connections. At the limit of the address, it is one of the same address.
+  /// Returns the connection to close for a new one from an address: the oldest silent one from the
+  /// address with most connections. At the limit of the address, it has the same address.
   template <class IsSilent>
   [[nodiscard]] std::optional<ConnectionId> gives_way(const std::string& address,
                                                       const IsSilent& is_silent) const {

@@ -6,7 +6,7 @@ namespace fc_runtime::detail {
 
 namespace {
 
-/// The bytes of an address; an address of IPv4 in the form of IPv6 is one of IPv4.
+/// Returns the bytes of an address. An IPv4 address mapped to IPv6 becomes IPv4.
 std::vector<unsigned char> bytes_of(const asio::ip::address& address) {
   if (address.is_v4()) {
     const auto bytes = address.to_v4().to_bytes();
@@ -17,7 +17,7 @@ std::vector<unsigned char> bytes_of(const asio::ip::address& address) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Whether the first bits of both are the same.
+/// Returns `true` if the first `bits` bits are equal.
 bool share(const std::vector<unsigned char>& one, const std::vector<unsigned char>& other,
            std::size_t bits) {
   if (one.size() != other.size()) return false;
@@ -58,7 +58,7 @@ const std::vector<Effect>* AllowList::effects(const asio::ip::address& address) 
   const Network* smallest = nullptr;
   for (const Network& network : networks_) {
     if (!share(network.bytes, bytes, network.prefix)) continue;
-    // Named again, it is as it was named last.
+    // The last entry of a network applies.
     if (smallest == nullptr || network.prefix >= smallest->prefix) smallest = &network;
   }
   return smallest != nullptr ? &smallest->effects : nullptr;

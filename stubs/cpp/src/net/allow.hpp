@@ -1,4 +1,4 @@
-// Who may connect to a robot, and who may call what.
+// The networks that may connect to a robot, and the commands that they may call.
 #pragma once
 
 #include <asio/ip/address.hpp>
@@ -10,19 +10,19 @@
 
 namespace fc_runtime::detail {
 
-/// Networks, each with what may be called from it.
+/// Networks with their allowed effects.
 class AllowList {
  public:
-  /// What is wrong with the networks, if anything is.
+  /// Reads the networks. Returns the error, if any.
   [[nodiscard]] std::optional<BindError> read(const std::vector<Allowed>& allow);
-  /// The effects of what may be called from an address, none for all of them; null if nobody may
-  /// connect from there.
+  /// Returns the effects that an address may call; empty for all. Returns null if it may not
+  /// connect.
   [[nodiscard]] const std::vector<Effect>* effects(const asio::ip::address& address) const;
 
  private:
   struct Network {
     std::vector<unsigned char> bytes;
-    /// How many of its bits an address has to share.
+    /// Length of the prefix in bits.
     std::size_t prefix = 0;
     std::vector<Effect> effects;
   };

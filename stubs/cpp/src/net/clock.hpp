@@ -1,4 +1,4 @@
-// The clocks of those who have sockets.
+// The clocks of code with sockets.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace fc_runtime::detail {
 
 [[nodiscard]] inline Instant clock_now() { return std::chrono::steady_clock::now(); }
 
-/// The local time of day, so that who restarts does not use its ids again.
+/// Returns the local time of day, so that a restarted peer does not reuse its ids.
 [[nodiscard]] std::uint32_t first_id_now();
 
 }  // namespace fc_runtime::detail

@@ -29,7 +29,7 @@ ClientSettings filled_in(const Protocol& protocol, const ClientConfig& config) {
 
 }  // namespace
 
-/// The local time of day, so that who restarts does not use its ids again.
+/// Returns the local time of day, so that a restarted peer does not reuse its ids.
 std::uint32_t first_id_now() {
   const std::int64_t now = unix_ms();
   const std::time_t seconds = now / 1000;
@@ -59,7 +59,7 @@ void ConnectionImpl::start(std::function<void(std::optional<Loss>)> first) {
       dial();
     }
   });
-  // The thread keeps what it works on.
+  // The thread owns the connection that it works on.
   thread_ = std::thread([self = shared_from_this()] {
     self->own_ = std::this_thread::get_id();
     self->io_.run();
@@ -70,7 +70,7 @@ void ConnectionImpl::post(std::function<void()> work) {
   {
     const std::lock_guard held(posted_mutex_);
     posted_.push_back(std::move(work));
-    // Whoever was the first has it done, and calls that have come until then go out with one write.
+    // The first caller posts the work. Calls that arrive until then are sent with one write.
     if (posted_.size() > 1) return;
   }
   asio::post(io_, [this] { work_off(); });
@@ -191,7 +191,7 @@ void ConnectionImpl::after_work() {
 void ConnectionImpl::arm() {
   const auto due = core_.next_due(clock_now());
   if (!due || is_closed_) return;
-  // What is set to something earlier looks again then.
+  // A timer that fires earlier arms itself again.
   if (armed_ && *armed_ <= *due) return;
   armed_ = due;
   timer_.expires_at(*due);
@@ -225,7 +225,7 @@ void ConnectionImpl::tell(const std::function<void(Companion&)>& what) {
 
 }  // namespace detail
 
-/// Keeps the connection open as long as it exists.
+/// Keeps the connection open during its lifetime.
 class Connection::Handle {
  public:
   explicit Handle(std::shared_ptr<detail::ConnectionImpl> shared) : impl(std::move(shared)) {}
@@ -256,7 +256,7 @@ Connection Connection::connect_lazy(const Protocol& protocol, const ClientConfig
 Answer Connection::call_body(std::uint16_t code, std::string body,
                              const CallOptions& options) const {
   if (handle_->impl->is_own_thread()) {
-    // Who waits here would wait for himself.
+    // On its own thread, the wait would never end.
     CallError error;
     error.kind = CallErrorKind::Busy;
     return error;
@@ -272,7 +272,7 @@ Answer Connection::call_body(std::uint16_t code, std::string body,
 
 PendingCall Connection::call_body_async(std::uint16_t code, std::string body, Completion done,
                                         const CallOptions& options) const {
-  // Touched on the connection's thread alone.
+  // Used only on the thread of the connection.
   const auto token = std::make_shared<std::uint64_t>(0);
   const auto impl = handle_->impl;
   Completion guarded;

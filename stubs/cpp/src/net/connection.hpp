@@ -22,30 +22,30 @@
 
 namespace fc_runtime::detail {
 
-/// Where a data connection is told of what happens to the command connection.
+/// The interface through which a data connection follows the command connection.
 class Companion {
  public:
   Companion() = default;
   Companion(const Companion&) = delete;
   Companion& operator=(const Companion&) = delete;
   virtual ~Companion() = default;
-  /// The command connection has been made, or made again.
+  /// The command connection is up, for the first time or again.
   virtual void commands_connected() = 0;
-  /// The command connection is over.
+  /// The command connection is closed.
   virtual void commands_closed(const Loss& why) = 0;
 };
 
-/// What the handles of a connection share. All but the constructor and what is said otherwise happens
-/// on its thread.
+/// The shared state of the handles of a connection. All functions run on its thread, except the
+/// constructor and those marked otherwise.
 class ConnectionImpl : public std::enable_shared_from_this<ConnectionImpl> {
  public:
   ConnectionImpl(const Protocol& protocol, const ClientConfig& config);
 
-  // From any thread.
+  // Functions for any thread.
   void start(std::function<void(std::optional<Loss>)> first);
   [[nodiscard]] bool is_own_thread() const { return std::this_thread::get_id() == own_; }
   void post(std::function<void()> work);
-  /// Lets the thread end, and waits for it.
+  /// Ends the thread and waits for it.
   void stop();
   [[nodiscard]] const Protocol& protocol() const { return *protocol_; }
   [[nodiscard]] const ClientConfig& config() const { return config_; }
@@ -58,7 +58,7 @@ class ConnectionImpl : public std::enable_shared_from_this<ConnectionImpl> {
   void note_out_of_order() { core_.note_out_of_order(); }
   [[nodiscard]] Logger& logger() { return logger_; }
 
-  // On its thread.
+  // Functions for its thread.
   std::uint64_t call(std::uint16_t code, std::string body, const CallOptions& options,
                      Completion done);
   void cancel(std::uint64_t call);

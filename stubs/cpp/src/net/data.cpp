@@ -33,7 +33,7 @@ namespace detail {
 
 namespace {
 
-/// Frames that wait for the app, or for one of its subscriptions.
+/// Most frames that wait for the app, or for one of its subscriptions.
 constexpr std::size_t kFramesForApp = 4;
 
 DataError failed(DataErrorKind kind, const Loss& why) { return {kind, why, std::nullopt}; }
@@ -128,7 +128,8 @@ void DataImpl::received(std::string_view bytes) {
   take_frames();
 }
 
-/// Takes frames out of the decoder as long as there is room for them; then the robot is not read.
+/// Takes frames from the decoder until the inbox is full. Then the client stops reading from the
+/// robot.
 void DataImpl::take_frames() {
   for (;;) {
     std::unique_lock held(mutex_);
@@ -157,8 +158,7 @@ void DataImpl::take_frames() {
   if (link_) link_->read();
 }
 
-/// A frame, or what is wrong with one, goes to those who have subscribed to its code, or else to who asks
-/// for all. Under the lock.
+/// Gives a frame or its error to the subscribers of its code, or else to `next`. Needs the lock.
 void DataImpl::give(std::uint16_t code, const Result<StreamFrame, DataError>& frame) {
   bool is_taken = false;
   bool are_any = false;
@@ -188,7 +188,7 @@ std::shared_ptr<Subscribed> DataImpl::subscribe(std::uint16_t code) {
   subscriptions_.erase(std::remove_if(subscriptions_.begin(), subscriptions_.end(), is_gone),
                        subscriptions_.end());
   subscriptions_.push_back(subscribed);
-  // What has come before for nobody in particular no longer keeps the robot from being read.
+  // Frames that arrived before the first subscription no longer block reading from the robot.
   const bool was_full = !is_asked_ && inbox_.size() >= kFramesForApp;
   if (was_full) inbox_.clear();
   held.unlock();
@@ -243,7 +243,7 @@ void DataImpl::down(const Loss& why, bool for_good) {
     if (is_asked_ || !are_any) inbox_.emplace_back(failed(DataErrorKind::Lost, why));
     may_be_lost_ = has_sent_;
   }
-  // What has been begun may have arrived or not; the rest goes over the next connection.
+  // Frames in transit may have arrived. The others are sent over the next connection.
   while (!sending_.empty() && (for_good || sending_.front()->is_begun)) {
     Sending& first = *sending_.front();
     first.ended.emplace(failed(first.is_begun ? DataErrorKind::Lost : DataErrorKind::Closed, why));
@@ -282,7 +282,7 @@ void DataImpl::send_next() {
   }
 }
 
-/// Looks now and then whether the connection goes on.
+/// Checks periodically that the connection makes progress.
 void DataImpl::watch() {
   const auto patience = bounded(commands_->config().stall_timeout);
   watching_.expires_after(patience / 4 + std::chrono::milliseconds(1));

@@ -1,4 +1,4 @@
-// An app's connection to the data port, on the thread of its command connection.
+// The connection of an app to the data port, on the thread of its command connection.
 #pragma once
 
 #include <asio/steady_timer.hpp>
@@ -17,19 +17,19 @@
 
 namespace fc_runtime::detail {
 
-/// What waits for one subscription; under the lock of its connection.
+/// The queue of one subscription. The lock of the connection protects it.
 struct Subscribed {
   std::uint16_t code = 0;
   std::deque<Result<StreamFrame, DataError>> inbox;
   std::uint64_t missed = 0;
 };
 
-/// What a data connection is made of.
+/// The implementation of a data connection.
 class DataImpl : public Companion, public std::enable_shared_from_this<DataImpl> {
  public:
   explicit DataImpl(ConnectionImpl& commands);
 
-  // From any thread.
+  // Functions for any thread.
   [[nodiscard]] Result<Done, DataError> wait_for_connection();
   [[nodiscard]] Result<StreamFrame, DataError> next(std::chrono::milliseconds wait);
   [[nodiscard]] Result<Done, DataError> send(std::uint16_t code, std::uint32_t id,
@@ -41,12 +41,12 @@ class DataImpl : public Companion, public std::enable_shared_from_this<DataImpl>
   void post_close();
   void post_start();
 
-  // On the thread of the command connection.
+  // Functions for the thread of the command connection.
   void commands_connected() override;
   void commands_closed(const Loss& why) override { close(why); }
 
  private:
-  /// A frame on its way; under the lock.
+  /// An outgoing frame. The lock protects it.
   struct Sending {
     std::string bytes;
     bool is_begun = false;
@@ -82,16 +82,16 @@ class DataImpl : public Companion, public std::enable_shared_from_this<DataImpl>
   ConnectionState state_;
   std::deque<Result<StreamFrame, DataError>> inbox_;
   std::vector<std::weak_ptr<Subscribed>> subscriptions_;
-  /// Somebody takes frames of any code.
+  /// `true` if a caller takes frames of any code.
   bool is_asked_ = false;
   std::deque<std::shared_ptr<Sending>> sending_;
-  /// Something was sent over this connection.
+  /// `true` if something was sent over this connection.
   bool has_sent_ = false;
-  /// What was sent may be lost, and the sender has not been told yet.
+  /// `true` if sent frames may be lost and the sender does not know yet.
   bool may_be_lost_ = false;
 };
 
-/// A data connection that is closed when it is let go of, and then lets go of the command connection.
+/// Opens a data connection. Destroying it closes it and releases the command connection.
 [[nodiscard]] std::shared_ptr<DataImpl> open_data(ConnectionImpl& commands,
                                                   std::shared_ptr<void> handle);
 

@@ -9,7 +9,7 @@ namespace fc_runtime::detail {
 
 namespace {
 
-/// Frames that wait for one app, or for the robot, besides the one on its way.
+/// Most frames that wait for one app, or for the robot, in addition to the current one.
 constexpr std::size_t kFramesForRobot = 4;
 
 }  // namespace
@@ -22,7 +22,7 @@ DataPort::DataPort(asio::io_context& io, const Protocol& protocol, const RobotSe
 
 std::size_t DataPort::held_by(ConnectionId id, const Peer& peer) const {
   std::size_t held = peer.decoder.pending() + peer.link->unwritten();
-  // A frame to several apps is held once.
+  // Several apps share the memory of a frame.
   const auto share = [](const std::shared_ptr<const std::string>& frame) {
     return frame->size() / static_cast<std::size_t>(std::max(frame.use_count(), 1L));
   };
@@ -160,7 +160,7 @@ void DataPort::settle(const std::shared_ptr<Sending>& sending, bool taken) {
   if (--sending->open == 0) sending->sent(sending->taken);
 }
 
-/// Writes what waits, one frame after the other, and takes up what has waited for room.
+/// Writes the next queued frame, and takes up senders that waited for space.
 void DataPort::go_on(ConnectionId id) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
@@ -235,7 +235,7 @@ void DataPort::resume() {
   }
 }
 
-/// Looks now and then whether the connections go on.
+/// Checks periodically that the connections make progress.
 void DataPort::watch() {
   const auto shorter = bounded(std::min(settings_.stall_timeout, settings_.header_timeout));
   watching_.expires_after(shorter / 4 + std::chrono::milliseconds(1));

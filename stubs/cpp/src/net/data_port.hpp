@@ -1,4 +1,4 @@
-// A robot's data port, on the thread of its server.
+// The data port of a robot, on the thread of its server.
 #pragma once
 
 #include <asio/io_context.hpp>
@@ -20,12 +20,12 @@
 
 namespace fc_runtime::detail {
 
-/// What a stream that was to be sent has come to.
+/// Takes the outcome of sending a stream.
 using StreamSent = std::function<void(Result<std::size_t, PushError>)>;
 
 /// The data connections of a robot.
 class DataPort {
-  /// A frame on its way to several connections.
+  /// An outgoing frame to several connections.
   struct Sending {
     std::size_t open = 0;
     std::size_t taken = 0;
@@ -43,7 +43,7 @@ class DataPort {
     std::string address;
     std::shared_ptr<Link> link;
     Decoder decoder;
-    /// The command connections that have been open at the same address meanwhile.
+    /// The command connections that were open at the same address in the meantime.
     std::vector<ConnectionId> owners;
     std::deque<std::shared_ptr<const std::string>> queue;
     std::deque<Waiting> waiting;
@@ -55,36 +55,36 @@ class DataPort {
 
   DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings);
 
-  /// Called when it may hold more than before.
+  /// Called when the port may hold more memory than before.
   std::function<void()> on_held;
 
-  /// An app has connected, and there is room for it.
+  /// Adds a connection of an app. There must be room for it.
   void connect(ConnectionId id, const std::string& address, std::shared_ptr<Link> link,
                const std::vector<ConnectionId>& commands_from_there);
-  /// The connections that there are.
+  /// The current connections.
   [[nodiscard]] Crowd<Peer> crowd(std::size_t per_address) const {
     return {peers_, per_address, settings_.limits.connections};
   }
   [[nodiscard]] bool is_empty() const { return peers_.empty(); }
-  /// Bytes that apps make it hold.
+  /// Bytes that the port holds for apps.
   [[nodiscard]] std::size_t held() const;
-  /// The connection that holds most, and its bytes.
+  /// Returns the connection that holds most, and its bytes.
   [[nodiscard]] std::optional<std::pair<ConnectionId, std::size_t>> largest() const;
   void end(ConnectionId id);
-  /// Ends a connection, and drops the frames that have come over it.
+  /// Ends a connection and drops its received frames.
   void evict(ConnectionId id);
-  /// A command connection has come from an address.
+  /// Notes a command connection from an address.
   void saw(ConnectionId command, const std::string& address);
   void send(std::optional<ConnectionId> to, std::uint16_t code, std::uint32_t id,
             const std::string& data, StreamSent sent);
-  /// Ends all connections once what waits has been sent.
+  /// Ends all connections after the queued frames are sent.
   void drain();
   void close();
 
-  // From any thread.
+  // For any thread.
   [[nodiscard]] std::optional<AppStream> next(std::chrono::milliseconds wait,
                                               const std::function<void()>& resume);
-  // On the thread of the server: there is room again.
+  // Continues when there is room again. For the thread of the server.
   void resume();
 
  private:

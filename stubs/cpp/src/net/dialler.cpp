@@ -8,7 +8,7 @@
 
 namespace fc_runtime::detail {
 
-/// An attempt under way; over as soon as its `done` is gone.
+/// A connection attempt. It is over when `done` is empty.
 struct Dialler::Attempt {
   Attempt(asio::io_context& io, Dialled told)
       : socket(io), resolver(io), timer(io), done(std::move(told)) {}
@@ -42,12 +42,12 @@ Dialler::Dialler(asio::io_context& io, std::string host, std::uint16_t port,
 std::optional<std::chrono::milliseconds> Dialler::next_wait() {
   if (std::exchange(is_first_, false)) return std::chrono::milliseconds(0);
   if (!backoff_ || (backoff_->attempts && failed_ >= *backoff_->attempts)) return std::nullopt;
-  // A year, doubled so often, still fits.
+  // A year, doubled 20 times, does not overflow.
   const auto doubled =
       bounded(backoff_->first) * (std::int64_t{1} << std::min<std::uint32_t>(waits_, 20));
   ++waits_;
   const auto wait = std::min<std::chrono::milliseconds>(doubled, bounded(backoff_->longest));
-  // Many apps do not come back at once.
+  // The random part keeps many apps from reconnecting at once.
   std::random_device chance;
   return wait - wait * static_cast<std::int64_t>(chance() % 256) / 1024;
 }

@@ -1,4 +1,4 @@
-// Making connections, and making them again.
+// Connects and reconnects.
 #pragma once
 
 #include <asio/io_context.hpp>
@@ -15,20 +15,20 @@
 
 namespace fc_runtime::detail {
 
-/// Makes a connection each time it is asked to, after a wait that grows while it fails.
+/// Makes a connection on request, after a wait that grows while attempts fail.
 class Dialler {
  public:
   using Dialled = std::function<void(Result<std::shared_ptr<Link>, Loss>)>;
 
   Dialler(asio::io_context& io, std::string host, std::uint16_t port, const ClientConfig& config);
 
-  /// One attempt, after its wait; `done` is told of it. Says whether there is one: no if it has been
-  /// tried often enough.
+  /// Starts one attempt after its wait and calls `done` with the outcome. Returns `false` if the
+  /// attempts are used up.
   [[nodiscard]] bool dial(Dialled done);
-  /// A connection has ended. A robot that was `heard` on it is tried at once; one that only accepts
-  /// and closes is waited for longer and longer.
+  /// Notes that a connection has ended. If the robot was `heard` on it, the next attempt starts at
+  /// once. If it only accepted and closed, the wait grows.
   void ended(bool heard);
-  /// Gives up the attempt that is under way.
+  /// Cancels the current attempt.
   void cancel();
 
  private:
@@ -46,7 +46,7 @@ class Dialler {
   std::optional<std::chrono::milliseconds> keepalive_;
   std::optional<Backoff> backoff_;
   bool is_first_ = true;
-  /// Attempts in a row that did not connect.
+  /// Consecutive failed attempts.
   std::uint32_t failed_ = 0;
   /// Waits since the robot was last heard.
   std::uint32_t waits_ = 0;

@@ -11,17 +11,17 @@ namespace fc_runtime::detail {
 
 namespace {
 
-/// What is read at once, in bytes.
+/// Size of a read, in bytes.
 constexpr std::size_t kRead = std::size_t{64} * 1024;
-/// How long a closing connection tries to send what is left, and waits for the peer's goodbye.
+/// Time of a closing connection to send the rest and wait for the end of the peer.
 constexpr std::chrono::seconds kClosing{1};
 
 void set_option(int socket, int level, int option, int value) {
-  // Where the system does not know it, the connection does without.
+  // If the system does not know an option, the connection works without it.
   static_cast<void>(setsockopt(socket, level, option, &value, sizeof value));
 }
 
-/// Calls one whose owner may let go of it meanwhile.
+/// Calls a listener whose owner may release it during the call.
 template <class... Arguments>
 void tell(const std::function<void(Arguments...)>& listener, Arguments... what) {
   const std::function<void(Arguments...)> kept = listener;
@@ -45,7 +45,7 @@ void Link::prepare(std::optional<std::chrono::milliseconds> keepalive) {
   set_option(socket_.native_handle(), IPPROTO_TCP, TCP_KEEPINTVL, static_cast<int>(probes));
 #endif
 #ifdef TCP_USER_TIMEOUT
-  // Keepalive asks only while nothing is on its way; this bounds the other case.
+  // Keepalive probes only an idle connection. This option limits unacknowledged data.
   set_option(socket_.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT,
              static_cast<int>(keepalive->count() * 2));
 #endif
@@ -65,7 +65,7 @@ void Link::read() {
                             }
                             if (error) {
                               self->ended_ = true;
-                              // It may let go of itself there.
+                              // The listener may release this link.
                               tell<const std::error_code&>(self->on_end, error);
                               return;
                             }
@@ -121,7 +121,7 @@ void Link::wrote(std::error_code error, std::size_t count) {
   } else {
     write();
   }
-  // It may give more to be written, or let go of all of it.
+  // The listener may write more, or release this link.
   tell<>(on_written);
 }
 

@@ -1,4 +1,4 @@
-// One TCP connection's bytes, on the thread of its `io_context`.
+// The byte stream of one TCP connection, on the thread of its `io_context`.
 #pragma once
 
 #include <asio/io_context.hpp>
@@ -15,33 +15,33 @@
 
 namespace fc_runtime::detail {
 
-/// Reads while it is told to, and writes what it is given, in order.
+/// Reads on request, and writes in order.
 class Link : public std::enable_shared_from_this<Link> {
  public:
   using Socket = asio::ip::tcp::socket;
 
   explicit Link(Socket socket);
 
-  /// Bytes have come.
+  /// Called with received bytes.
   std::function<void(std::string_view)> on_bytes;
-  /// Nothing more comes: the peer has closed its half (`asio::error::eof`), or the connection broke.
+  /// Called at the end: the peer has closed its half (`asio::error::eof`), or the connection broke.
   std::function<void(const std::error_code&)> on_end;
-  /// Some of what was to be written has been.
+  /// Called after some queued bytes are written.
   std::function<void()> on_written;
 
-  /// Small frames leave at once, and a peer that is gone without a word is noticed.
+  /// Sets the socket options: small frames leave at once, and a dead peer is detected.
   void prepare(std::optional<std::chrono::milliseconds> keepalive);
   void read();
   void pause() { wanted_ = false; }
   void send(std::string bytes);
-  /// What is still to be written, in bytes.
+  /// Number of bytes to be written.
   [[nodiscard]] std::size_t unwritten() const {
     return waiting_.size() + writing_.size() - written_;
   }
-  /// Says goodbye once all is written, and waits a moment for the peer's: a socket that is closed
-  /// while something is unread is reset, and what the peer has not read yet is lost to it.
+  /// Closes its half after all is written, and waits a moment for the end of the peer. Closing a
+  /// socket with unread bytes resets it, and the peer loses bytes that it has not read yet.
   void finish();
-  /// Closes at once; nothing is told any more.
+  /// Closes at once, without further callbacks.
   void close();
 
  private:

@@ -25,7 +25,7 @@ namespace detail {
 
 namespace {
 
-/// Lines that one cause may write within `kWindow`.
+/// Most lines of one cause within `kWindow`.
 constexpr int kLines = 5;
 constexpr std::chrono::minutes kWindow{1};
 
@@ -76,7 +76,7 @@ void Logger::write(LogLevel level, std::string_view cause, const std::string& te
   try {
     log_(level, line);
   } catch (...) {
-    // There is no other log for the errors of the log.
+    // Errors of the log cannot be logged.
   }
 }
 

@@ -1,4 +1,4 @@
-// The log of a client or server, and calls of the program's own functions.
+// The log of a client or server, and calls of user functions.
 #pragma once
 
 #include <chrono>
@@ -16,21 +16,21 @@
 
 namespace fc_runtime::detail {
 
-/// The type of the exception that is being handled, such as `std::out_of_range`. Its text is not
-/// logged, because it may quote what a peer has sent.
+/// Returns the type of the current exception, such as `std::out_of_range`. Its text is not logged,
+/// because it may quote data from a peer.
 [[nodiscard]] std::string thrown_type();
 
-/// Writes lines to a log. Usable from any thread.
+/// Writes lines to a log. Any thread may use it.
 class Logger {
  public:
-  /// Without a log, errors go to the standard error and nothing else is written.
+  /// Without a log, errors go to the standard error, and other lines are dropped.
   Logger(Log log, std::string_view protocol);
 
-  /// Writes a line. One cause writes five lines a minute: a flood must not become a flood in the log.
+  /// Writes a line. One cause writes at most five lines a minute, so that it cannot flood the log.
   void write(LogLevel level, std::string_view cause, const std::string& text);
 
-  /// Calls a function of the program. An exception ends neither the thread nor the connection: it is
-  /// logged as one of `what`.
+  /// Calls a user function. An exception ends neither the thread nor the connection. It is logged
+  /// as thrown by `what`.
   template <class Function, class... Arguments>
   void call(std::string_view what, const Function& function, Arguments&&... arguments) noexcept {
     try {
@@ -39,7 +39,7 @@ class Logger {
       write_thrown(what);
     }
   }
-  /// Logs the exception that is being handled as one of `what`.
+  /// Logs the current exception as thrown by `what`.
   void write_thrown(std::string_view what) noexcept;
 
  private:
@@ -50,7 +50,7 @@ class Logger {
     std::uint64_t held = 0;
   };
 
-  /// The number of lines left out before this one; empty if this one is left out too.
+  /// Returns the number of lines skipped before this one, or nothing if this one is skipped too.
   [[nodiscard]] std::optional<std::uint64_t> admit(std::string_view cause);
 
   Log log_;
@@ -59,7 +59,7 @@ class Logger {
   std::map<std::string, Cause, std::less<>> causes_;
 };
 
-/// A command as the log names it: its name in the spec, or its code in hexadecimal.
+/// Returns the name of a command in the spec, or its code in hexadecimal.
 [[nodiscard]] std::string command_name(const Protocol& protocol, std::uint16_t code);
 
 }  // namespace fc_runtime::detail

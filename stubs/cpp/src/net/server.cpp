@@ -71,7 +71,7 @@ RobotSettings filled_in(const Protocol& protocol, const ServerConfig& config) {
 
 }  // namespace
 
-/// What a server is made of. All but what is said otherwise happens on its thread.
+/// The implementation of a server. All functions run on its thread, except those marked otherwise.
 class ServerImpl {
  public:
   ServerImpl(const Protocol& protocol, Service service, const ServerConfig& config)
@@ -102,14 +102,14 @@ class ServerImpl {
   ServerImpl& operator=(const ServerImpl&) = delete;
   ~ServerImpl() {
     if (!thread_.joinable()) return;
-    // Handlers that wait for a report to end wait no more; nothing of theirs is cut off.
+    // Releases handlers that wait for the end of a report. They run to their end.
     asio::post(io_, [this] { stop(); });
     workers_.stop();
     asio::post(io_, [this] { work_.reset(); });
     thread_.join();
   }
 
-  // From any thread.
+  // Functions for any thread.
   std::optional<BindError> listen();
   void post(std::function<void()> work) { asio::post(io_, std::move(work)); }
   [[nodiscard]] const Protocol& protocol() const { return *protocol_; }
@@ -124,7 +124,7 @@ class ServerImpl {
     return connected_;
   }
 
-  // On its thread.
+  // Functions for its thread.
   void push(std::uint16_t code, std::string body, std::optional<ConnectionId> to, Pushed done) {
     core_.push(code, std::move(body), to, std::move(done), clock_now());
     after_work();
@@ -178,7 +178,7 @@ class ServerImpl {
   DataPort data_;
   AllowList allowed_;
   std::map<ConnectionId, Peer> peers_;
-  /// Data connections have ids of the same count, from above.
+  /// Ids of data connections are from the upper range of the same type.
   ConnectionId next_data_ = ConnectionId{1} << 32U;
   std::vector<std::function<void()>> over_;
   bool is_stopped_ = false;
@@ -189,7 +189,7 @@ class ServerImpl {
   std::mutex ended_mutex_;
   std::vector<std::pair<std::uint64_t, Handled>> ended_;
   std::thread thread_;
-  /// Last: it ends first, and its handlers may still ask for the rest.
+  /// The last member is destroyed first: its handlers may still use the others.
   Workers workers_;
 };
 
@@ -233,7 +233,7 @@ void ServerImpl::accept(tcp::acceptor& acceptor, bool is_data) {
   });
 }
 
-/// Accepts again after a moment. The system may be out of files, and would report so without end.
+/// Accepts again after a moment. If the system has no more file handles, it would fail endlessly.
 void ServerImpl::accept_later(tcp::acceptor& acceptor, bool is_data) {
   const auto timer = std::make_shared<asio::steady_timer>(io_, std::chrono::milliseconds(100));
   timer->async_wait([this, &acceptor, is_data, timer](std::error_code) {
@@ -248,7 +248,7 @@ bool ServerImpl::speaks(const std::string& address) const {
   });
 }
 
-/// Makes room for a connection. Returns `false` if there is none; counts and logs it.
+/// Makes room for a connection. Returns `false` if that is impossible; counts and logs it.
 template <class Peers, class IsSilent, class GiveWay>
 bool ServerImpl::admit(const Crowd<Peers>& crowd, const std::string& address,
                        const IsSilent& is_silent, const GiveWay& give_way) {
@@ -288,7 +288,7 @@ void ServerImpl::accepted(tcp::socket socket, bool is_data) {
   for (const auto& [id, peer] : peers_) {
     if (peer.address == address) owners.push_back(id);
   }
-  // An app that only receives streams is known by its commands.
+  // An app that only receives streams is recognized by its commands.
   const auto is_silent = [this](ConnectionId, const DataPort::Peer& peer) {
     return !peer.is_heard && !speaks(peer.address);
   };
@@ -342,7 +342,7 @@ void ServerImpl::note() {
   connected_ = core_.connections();
 }
 
-/// A connection is no more.
+/// Removes a connection.
 void ServerImpl::forget(ConnectionId id) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
@@ -357,7 +357,7 @@ void ServerImpl::begin(const Request& request) {
   const auto work = [this, request] {
     auto text = request.text.lock();
     if (!text) {
-      // The app has gone at this very moment.
+      // The app has just disconnected.
       ended(request.handler, Refusal(protocol_->results.timeout));
       return;
     }
@@ -369,14 +369,14 @@ void ServerImpl::begin(const Request& request) {
                           settings_.limits.json(),
                           config_.max_age ? config_.max_age : protocol_->defaults.max_age};
     Handled handled = handle(context, *text);
-    // Its memory has to be free when the server looks for some.
+    // Frees its memory before the server measures the use of memory.
     text.reset();
     ended(request.handler, std::move(handled));
   };
   workers_.run(work, request.settled);
 }
 
-/// Runs the handler of a request. An exception becomes an answer, so that the robot lives.
+/// Runs the handler of a request. An exception becomes a response, so that the server survives.
 Handled ServerImpl::handle(const Context& context, std::string_view text) {
   try {
     return service_(context, text);
@@ -386,11 +386,11 @@ Handled ServerImpl::handle(const Context& context, std::string_view text) {
   return handler_failed(*protocol_);
 }
 
-/// Counts an error of a handler, logs it and passes it on. From any thread.
+/// Counts and logs an error of a handler and passes it on. For any thread.
 void ServerImpl::note_failure(const Context& context, const std::exception_ptr& error) {
   ++core_.counting().handlers_panicked;
   const std::string command = command_name(*protocol_, context.code);
-  // Apps choose the codes: those that are no command are one cause.
+  // Apps choose the codes, so all unknown codes are one cause.
   const bool is_known = protocol_->find(OperationKind::Command, context.code) != nullptr;
   const std::string cause = "handler " + (is_known ? command : std::string());
   try {
@@ -407,7 +407,7 @@ void ServerImpl::note_failure(const Context& context, const std::exception_ptr& 
   }
 }
 
-/// Bytes that apps make the server hold.
+/// Bytes that the server holds for apps.
 std::size_t ServerImpl::held() const {
   std::size_t held = data_.held();
   for (const auto& [id, peer] : peers_) held += core_.held(id);
@@ -442,12 +442,12 @@ void ServerImpl::evict_largest() {
   }
 }
 
-/// A handler has given its answer. From any thread.
+/// Takes the outcome of a handler. For any thread.
 void ServerImpl::ended(std::uint64_t handler, Handled handled) {
   {
     const std::lock_guard held(ended_mutex_);
     ended_.emplace_back(handler, std::move(handled));
-    // Whoever was the first has it looked at, and all that has come until then goes out with one write.
+    // The first caller posts the work. Responses that arrive until then are sent with one write.
     if (ended_.size() > 1) return;
   }
   asio::post(io_, [this] { answer(); });

@@ -11,12 +11,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Deepest nesting that may be allowed: each level takes a piece of the stack.
+/// Largest allowed nesting. Each level takes a part of the stack.
 constexpr std::size_t kDeepest = 1024;
-/// Longest silence that systems take for TCP probes.
+/// Longest keepalive time that operating systems accept.
 constexpr milliseconds kLongestKeepalive = std::chrono::seconds(32767);
 
-/// Collects the first fault of the settings of one type.
+/// Collects the first error in the settings of one type.
 class Check {
  public:
   explicit Check(std::string_view of) : of_(of) {}
@@ -72,7 +72,7 @@ class Check {
 std::optional<std::string> fault_of(const ClientConfig& config) {
   Check check("ClientConfig");
   if (const auto& host = config.host) {
-    // The system takes an empty one for any address.
+    // The system takes an empty host for any address.
     const bool is_blank = host->find_first_not_of(" \t\r\n") == std::string::npos;
     check.require(!is_blank && host->find('\0') == std::string::npos, "host", "\"" + *host + "\"",
                   "a name or address");

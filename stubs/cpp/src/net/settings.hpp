@@ -9,8 +9,8 @@
 
 namespace fc_runtime::detail {
 
-/// The first setting that is out of range, such as "`ClientConfig::host` is "", expected a name or
-/// address".
+/// Returns the first setting that is out of range, such as "`ClientConfig::host` is "", expected a
+/// name or address".
 [[nodiscard]] std::optional<std::string> fault_of(const ClientConfig& config);
 [[nodiscard]] std::optional<std::string> fault_of(const ServerConfig& config);
 

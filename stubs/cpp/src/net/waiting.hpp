@@ -1,4 +1,4 @@
-// What one thread waits for and another gives.
+// A value passed from one thread to another.
 #pragma once
 
 #include <condition_variable>
@@ -8,7 +8,8 @@
 
 namespace fc_runtime::detail {
 
-/// A place for one value. Both threads hold on to it: who gives is not done when the other has it.
+/// A slot for one value. Both threads share ownership: the giver may still use it when the taker is
+/// done.
 template <class T>
 class Waiting {
  public:

@@ -15,14 +15,15 @@ void Workers::run(std::function<void()> work, std::shared_ptr<std::atomic<bool>>
   changed_.notify_one();
 }
 
-/// Removes settled work, so that the queue has at most twice as much as still has to be done.
+/// Removes settled work. The queue thus has at most twice as many entries as open work.
 void Workers::forget_settled() {
   const auto is_settled = [](const Waiting& waiting) { return waiting.settled->load(); };
   waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), is_settled), waiting_.end());
   longest_ = std::max(kLeast, 2 * waiting_.size());
 }
 
-/// Whether one that is idle is to be notified, once the mutex is free for him. Where none is, one more is started.
+/// Returns `true` if an idle thread is to be notified after the mutex is released. Starts a thread
+/// if none is idle.
 bool Workers::calls_another() {
   if (is_called_ || waiting_.empty() || is_over_) return false;
   if (idle_ > 0) return is_called_ = true;

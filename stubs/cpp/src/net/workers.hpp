@@ -13,8 +13,8 @@
 
 namespace fc_runtime::detail {
 
-/// As many threads as are needed at the same time, up to a limit. They get up one by one: who has got up has the next called if
-/// there is still work, which mostly is done by then.
+/// A thread pool that grows up to a limit. Threads wake one by one: each calls the next if there is
+/// still work. Mostly the work is done by then.
 class Workers {
  public:
   explicit Workers(std::size_t limit) : limit_(limit > 0 ? limit : 1) {}
@@ -22,10 +22,10 @@ class Workers {
   Workers& operator=(const Workers&) = delete;
   ~Workers() { stop(); }
 
-  /// Runs some work and sets `settled`, unless that has been set before.
+  /// Runs some work and sets `settled`, unless it was set before.
   void run(std::function<void()> work,
            std::shared_ptr<std::atomic<bool>> settled = std::make_shared<std::atomic<bool>>(false));
-  /// Waits for what is being worked on, and forgets what waits.
+  /// Waits for running work, and drops queued work.
   void stop();
 
  private:
@@ -44,10 +44,10 @@ class Workers {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Waiting> waiting_;
-  /// The length of the queue at which settled work is removed from it.
+  /// The length of the queue at which settled work is removed.
   std::size_t longest_ = kLeast;
   std::size_t idle_ = 0;
-  /// A thread has been called, and has not come yet.
+  /// `true` if a thread was called and has not arrived yet.
   bool is_called_ = false;
   bool is_over_ = false;
   std::vector<std::thread> threads_;

@@ -1,4 +1,4 @@
-// What tests say of what they find.
+// Counts and prints the outcomes of tests.
 #pragma once
 
 #include <cstdio>
@@ -8,7 +8,7 @@
 
 namespace tests {
 
-/// Counts what holds and what does not, and says of the latter where it is.
+/// Counts passed and failed checks, and prints the failed ones.
 class Tally {
  public:
   void check(bool holds, const std::string& what) {
@@ -16,13 +16,13 @@ class Tally {
     if (!holds) std::fprintf(stderr, "does not hold: %s\n", what.c_str());
   }
 
-  /// What has been checked since the last case was one of a kind of `conformance/README.md`; of none, if it is empty.
+  /// Ends a case. Its kind is from `conformance/README.md`; empty for no kind.
   void end_case(const std::string& kind) {
     if (!kind.empty() && failed_ == failed_before_) ++held_[kind];
     failed_before_ = failed_;
   }
 
-  /// What `main` gives back: a test that looked at less than it should has failed.
+  /// Returns the exit code of `main`. A test with fewer than `least` checks has failed.
   [[nodiscard]] int outcome(const char* of, int least) const {
     std::printf("%d of %d %s\n", passed_, passed_ + failed_, of);
     if (passed_ < least) std::fprintf(stderr, "fewer than %d\n", least);
@@ -31,7 +31,7 @@ class Tally {
   }
 
  private:
-  /// A line `KIND NUMBER` for each behind what is in the file that `FC_CONFORMANCE` names, if it names one.
+  /// Appends a line `KIND NUMBER` for each kind to the file in `FC_CONFORMANCE`, if set.
   void say_what_held() const {
     const char* path = std::getenv("FC_CONFORMANCE");
     std::FILE* file = path == nullptr ? nullptr : std::fopen(path, "a");

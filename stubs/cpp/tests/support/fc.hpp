@@ -1,4 +1,4 @@
-// The frame format and envelope of FC, for tests of what stands below its messages.
+// The frame format and envelope of FC, for tests of the layers below its messages.
 #pragma once
 
 #include <limits>

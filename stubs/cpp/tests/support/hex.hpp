@@ -1,4 +1,4 @@
-// Bytes in hexadecimal, as the vectors have them.
+// Bytes in hexadecimal, as in the vectors.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// A log that tests look into.
+// A log for tests.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class Lines {
       changed_.notify_all();
     };
   }
-  /// Waits for a line that has this in it.
+  /// Waits for a line that contains `part`.
   bool has(const std::string& part) {
     std::unique_lock held(mutex_);
     return changed_.wait_for(held, std::chrono::seconds(20), [&] { return is_there(part); });

@@ -1,4 +1,4 @@
-// The other end of a TCP connection, by hand: what no peer of ours would do.
+// The other end of a TCP connection under manual control, for misbehaviour that no client shows.
 #pragma once
 
 #include <arpa/inet.h>
@@ -45,7 +45,7 @@ class Socket {
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
   }
-  /// What has come; nothing at the end.
+  /// Returns received bytes, or nothing at the end.
   [[nodiscard]] std::string receive() const {
     std::string bytes(65536, '\0');
     const auto count = ::recv(handle_, bytes.data(), bytes.size(), 0);
@@ -72,7 +72,7 @@ inline Socket dial(std::uint16_t port) {
   return socket;
 }
 
-/// Accepts connections at a port of its own.
+/// Accepts connections at a free port.
 class Listener {
  public:
   Listener() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -104,7 +104,7 @@ class Frames {
     std::string bytes;
     if (fc_runtime::Encoder(*protocol_).append(bytes, id, body)) socket_.send(bytes);
   }
-  /// The next frame and its data; nothing at the end.
+  /// Returns the next frame and its data, or nothing at the end.
   [[nodiscard]] std::optional<std::pair<fc_runtime::FrameId, std::string>> receive() {
     for (;;) {
       const auto next = decoder_.next();

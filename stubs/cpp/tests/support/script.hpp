@@ -1,4 +1,4 @@
-// Scripts of `conformance/sessions` as data, and what they expect beside what happened.
+// Scripts of `conformance/sessions` as data, and the comparison with their expectations.
 #pragma once
 
 #include <filesystem>
@@ -15,17 +15,17 @@ namespace tests {
 
 using nlohmann::json;
 
-/// What does not hold, if anything.
+/// The description of a failure, if any.
 using Failure = std::optional<std::string>;
 
-/// What a peer has said and done in a step, each as a script would have it.
+/// The events of a peer in a step, in the format of the scripts.
 class Got {
  public:
   void push(json event) { events_.push_back(std::move(event)); }
 
   [[nodiscard]] bool is_empty() const { return events_.empty(); }
 
-  /// Compares with what was expected, in any order. An id counts where one was expected.
+  /// Compares with the expected events, in any order. Ids are compared only if expected.
   [[nodiscard]] Failure check(const json& expected) {
     std::vector<json> left;
     left.swap(events_);
@@ -58,7 +58,7 @@ class Got {
   std::vector<json> events_;
 };
 
-/// Runs every script of a level; `run` says what does not hold.
+/// Runs every script of a level. `run` returns the failure.
 inline void hold(Tally& tally, const char* folder, const std::string& level,
                  const std::function<Failure(const json& script)>& run) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

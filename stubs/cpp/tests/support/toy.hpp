@@ -1,4 +1,4 @@
-// The small protocol that the scripts speak of: a command that reads, one that moves, a report.
+// The small protocol of the scripts: a command that reads, one that moves, and a report.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ constexpr std::uint16_t kEcho = 100;
 constexpr std::uint16_t kGo = 200;
 constexpr std::uint16_t kMoved = 300;
 
-/// Frames as those of FC; 64 requests in flight.
+/// Frames as in FC; 64 requests in flight.
 inline fc_runtime::Protocol toy_protocol() {
   fc_runtime::Protocol protocol = fc_protocol();
   protocol.name = "toy";

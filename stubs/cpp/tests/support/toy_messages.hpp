@@ -1,4 +1,4 @@
-// The messages of the scripts' protocol, as generated code would have them.
+// The messages of the protocol of the scripts, in the form of generated code.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace tests {
 
-/// A body of one key.
+/// A body with one key.
 struct Echo {
   fc_runtime::Required<std::string> text;
   fc_runtime::Extra extra;
@@ -81,7 +81,7 @@ struct fc_runtime::Report<tests::Go> {
 
 namespace tests {
 
-/// The scripts' protocol with its operations.
+/// Returns the protocol of the scripts with its operations.
 inline fc_runtime::Protocol toy_with_messages() {
   using fc_runtime::Effect;
   using fc_runtime::OperationInfo;

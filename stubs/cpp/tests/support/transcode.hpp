@@ -1,4 +1,4 @@
-// Bodies read as the typed messages of the spec, envelope included, and written again.
+// Bodies read as the typed messages of the spec, including the envelope, and written again.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace tests {
 
 using Transcoded = fc_runtime::Result<std::string, fc_runtime::BodyError>;
 
-/// The body that is written of the message behind a body; its own text where it has no message.
+/// Reads a body as its message and writes it again. Returns the text itself if it has no message.
 inline Transcoded transcode(const fc_runtime::OperationInfo& operation, bool is_request,
                             std::string_view text) {
   const auto& type = is_request ? operation.request : operation.response;
@@ -31,7 +31,7 @@ inline Transcoded transcode(const fc_runtime::OperationInfo& operation, bool is_
     return again;
   }
   if (auto missing = beside.finish()) return *std::move(missing);
-  // The envelope's keys come first, and then the message's own.
+  // The envelope comes first, followed by the keys of the message.
   std::string whole = fc_runtime::write_envelope(keys, beside.envelope());
   const std::string own = again->substr(1);
   if (own == "}") return whole;

@@ -1,4 +1,4 @@
-/** Handlers that fail, in another package than the runtime: the log names lines of user code. */
+/** Failing handlers in another package than the runtime: the log names lines of user code. */
 package handlers
 
 import fc.runtime.Command
@@ -40,7 +40,7 @@ import kotlinx.coroutines.SupervisorJob
 import kotlinx.coroutines.awaitCancellation
 import kotlinx.coroutines.yield
 
-/** Faults on lines that the tests find by their marks. */
+/** Errors on lines that the tests find by their marks. */
 private object Faults {
     fun helper(): Int = listOf<Int>()[0] // helper
 
@@ -59,7 +59,7 @@ private object Faults {
     fun parse(): Moved = Moved.fromJson("{secret")
 }
 
-/** An error without a stack trace, whose own methods fail. */
+/** An error without a stack trace, whose methods fail. */
 private class Hostile : RuntimeException(null, null, false, false) {
     override val message: String get() = throw IllegalStateException("secret")
     override val cause: Throwable get() = throw IllegalStateException("secret")
@@ -103,7 +103,7 @@ private class Robot(
 
 private fun echo(handle: suspend () -> EchoReply) = Service().on(Toy.ECHO) { _, _ -> handle() }
 
-/** A handler as Java may write one. */
+/** A handler in the style of Java. */
 @Suppress("UNCHECKED_CAST")
 private fun java(result: Any?): Service {
     val handler = BiFunction<Context, Echo, Any?> { _, _ -> result }
@@ -265,7 +265,7 @@ private fun hookTests(tests: Tests) {
         )
         for (id in 0 until 50L) robot.call(100, id)
         robot.call(200)
-        // Apps choose unknown codes: all of them are one cause.
+        // Apps choose the codes, so all unknown codes are one cause.
         for (code in 1000 until 1020) robot.call(code)
         expect(listOf(11, 71), listOf(robot.lines.size, robot.errors.size))
     }

@@ -2,21 +2,21 @@ package fc.bench
 
 import java.io.File
 
-/** How many calls are in flight at a time. */
+/** Numbers of calls in flight. */
 private val IN_FLIGHT = listOf(1, 64)
 
-/** A process on a core of its own, where there are several. */
+/** A process on its own core, if there are several. */
 private class Worker(core: Int, vararg words: String) : AutoCloseable {
     private val process = ProcessBuilder(pinned(core) + JAVA + words).redirectError(ProcessBuilder.Redirect.INHERIT).start()
     private val questions = process.outputStream.bufferedWriter()
     private val answers = process.inputStream.bufferedReader()
 
-    /** What it says first. */
+    /** The first line of its output. */
     val first = answer()
 
     private fun answer() = checkNotNull(answers.readLine()) { "a process has ended" }
 
-    /** Asks, and waits for the answer. */
+    /** Sends a line and waits for the reply. */
     fun ask(question: String): String {
         questions.write(question + "\n")
         questions.flush()
@@ -45,14 +45,14 @@ private class Worker(core: Int, vararg words: String) : AutoCloseable {
 
 private class Round(val seconds: Double, val rate: Double, val p50: Double, val p99: Double, val cpu: Double)
 
-/** The processes of a peer. */
+/** The server and the caller process of a peer. */
 private class Pair(val peer: Peer) : AutoCloseable {
     private val server = Worker(0, "serve", peer.name)
     private val caller = Worker(1, "call", peer.name, server.first)
     var calls = 0
     val rounds = ArrayList<Round>()
 
-    /** How long one round took, and what that cost both processes. */
+    /** Runs one round. Returns its time, and the CPU time of both processes. */
     fun round(inFlight: Int): Round {
         server.ask("begin")
         caller.ask("begin")
@@ -69,7 +69,7 @@ private class Pair(val peer: Peer) : AutoCloseable {
     }
 }
 
-/** What calls cost with each number in flight, and with each peer, as the report has it. */
+/** Returns the cost of calls for each peer and number in flight, in the format of the report. */
 internal fun calls(effort: Effort): List<Map<String, Any>> {
     val pairs = ArrayList<Pair>()
     try {
@@ -82,7 +82,7 @@ internal fun calls(effort: Effort): List<Map<String, Any>> {
 
 private fun scenario(pairs: List<Pair>, inFlight: Int, effort: Effort): List<Map<String, Any?>> {
     for (pair in pairs) {
-        // Until all is compiled, and to find out how many calls a round is.
+        // Warms up the compiler, and doubles the calls of a round until it is long enough.
         pair.calls = 16 * inFlight
         var warmed = 0.0
         while (true) {
@@ -94,7 +94,7 @@ private fun scenario(pairs: List<Pair>, inFlight: Int, effort: Effort): List<Map
     }
     repeat(effort.rounds) { for (pair in pairs) pair.rounds.add(pair.round(inFlight)) }
     return pairs.map { pair ->
-        // A window of a floor is no call: it has no time of its own.
+        // A window of a baseline is not a call, so its latency means nothing.
         val hasTimes = inFlight == 1 || !pair.peer.windows
         linkedMapOf(
             "name" to pair.peer.name,

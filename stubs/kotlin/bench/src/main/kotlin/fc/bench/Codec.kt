@@ -15,25 +15,25 @@ import fc.runtime.MessageType
 import java.io.File
 import java.security.MessageDigest
 
-/** The messages: names of files in `bench/frames`, and what they hold. */
+/** The messages: names of files in `bench/frames`, and their types. */
 private val MESSAGES: Map<String, MessageType<*>> =
     linkedMapOf("small" to GetStationResponse, "medium" to ListStationsResponse, "long" to ListStationsResponse)
 
-/** Bytes of a header; its digest is the last of them. */
+/** Bytes of a header; the digest is its last field. */
 private val HEADER = Fc.header.length
 private const val DIGEST = 16
 
-/** What was made, so that no compiler leaves it out. */
+/** Uses the results, so that the compiler does not remove the work. */
 private var sink: Any? = null
 
-/** The least that reading takes: the digest checked, and all of the JSON parsed. */
+/** The least work of reading: checks the digest and parses all of the JSON. */
 private fun leastDecode(frame: ByteArray): JsonElement {
     val digest = MessageDigest.getInstance("MD5").apply { update(frame, HEADER, frame.size - HEADER) }.digest()
     check((0 until DIGEST).all { digest[it] == frame[HEADER - DIGEST + it] }) { "another digest" }
     return JsonParser.parseString(String(frame, HEADER, frame.size - HEADER, Charsets.UTF_8))
 }
 
-/** The least that writing takes: all of the JSON made, and its digest put into a header that is ready but for that. */
+/** The least work of writing: writes all of the JSON, and its digest into a prepared header. */
 private fun leastEncode(frame: ByteArray, value: JsonElement): ByteArray {
     val body = value.toString().toByteArray(Charsets.UTF_8)
     val made = frame.copyOf(HEADER + body.size)
@@ -41,7 +41,7 @@ private fun leastEncode(frame: ByteArray, value: JsonElement): ByteArray {
     return body.copyInto(made, HEADER)
 }
 
-/** What each message costs, in microseconds, as the report has it. */
+/** Returns the cost of each message in microseconds, in the format of the report. */
 internal fun codec(bench: File, effort: Effort): List<Map<String, Any>> =
     MESSAGES.map { (name, type) -> message(name, File(bench, "frames/$name.bin").readBytes(), type, effort) }
 
@@ -63,7 +63,7 @@ private fun <M : Message> message(name: String, frame: ByteArray, type: MessageT
         return encoder.prepare(Bodies.write(envelope, message)).frame(id)
     }
     val plain = leastDecode(frame)
-    // Each side writes what it reads, all of it; only the time of the response is that of now.
+    // Each side writes everything that it reads. Only the time of the response is the current one.
     check(decode(encode()) == message && encode().size == frame.size)
     check(leastEncode(frame, plain).contentEquals(frame))
     val found = measure(

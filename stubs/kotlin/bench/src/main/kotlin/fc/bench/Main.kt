@@ -14,7 +14,9 @@ private const val USAGE = """usage: bench/run [--smoke | --report]
 --smoke   one tiny round: that all of it works, and no figures to go by
 --report  writes bench/packages/kotlin.json, which the page about performance shows"""
 
-/** Measures the package beside JSON and MD5 alone, and beside blocking sockets; or is one of the processes that do. */
+/**
+ * Compares the package with plain JSON and MD5, and with blocking sockets. Also runs the server and caller processes.
+ */
 public fun main(arguments: Array<String>) {
     val words = arguments.toList()
     when (words.firstOrNull()) {
@@ -56,7 +58,7 @@ private fun measure(bench: File, options: List<String>) {
     if (isReport) File(bench, "packages/kotlin.json").writeText(gson.toJson(tree) + "\n")
 }
 
-/** Its name, where the system has one. */
+/** Returns the name of the processor, if the system knows it. */
 private fun processor(): String {
     val file = File("/proc/cpuinfo")
     val line = if (file.canRead()) file.useLines { lines -> lines.firstOrNull { it.startsWith("model name") } } else null

@@ -2,15 +2,15 @@ package fc.bench
 
 import java.lang.management.ManagementFactory
 
-/** How long to measure: [rounds] of all cases, each of at least so many milliseconds, after some until all is compiled. */
+/** The length of a measurement: [rounds] over all cases, [millis] for each, after [warmMillis] for the compiler. */
 internal class Effort(val rounds: Int, val millis: Long, val warmMillis: Long)
 
-/** The middle of some figures. */
+/** Returns the median. */
 internal fun median(figures: List<Double>): Double = figures.sorted()[figures.size / 2]
 
 private val threads = ManagementFactory.getThreadMXBean()
 
-/** Microseconds of this thread's CPU time that so many runs take. */
+/** Returns the CPU time of this thread for a number of runs, in microseconds. */
 private fun cost(times: Int, run: () -> Unit): Double {
     val before = threads.currentThreadCpuTime
     repeat(times) { run() }
@@ -18,8 +18,8 @@ private fun cost(times: Int, run: () -> Unit): Double {
 }
 
 /**
- * Microseconds that each of some cases takes, the median of its rounds. The cases take turns, in another order each round, so
- * that what disturbs one disturbs all.
+ * Returns the time of each case in microseconds, the median of its rounds. Each round runs the cases in another order,
+ * so that a disturbance affects them all.
  */
 internal fun measure(cases: List<() -> Unit>, effort: Effort): List<Double> {
     val times = cases.map { run ->

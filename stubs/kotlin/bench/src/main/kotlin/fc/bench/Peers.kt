@@ -23,24 +23,24 @@ private const val HOST = "127.0.0.1"
 private const val STATION = 1_671_124_918_008
 private const val NAME = "gate1"
 
-/** Bytes of the frame that asks, and of the frame that answers. */
+/** Bytes of the request frame and of the response frame. */
 private const val ASKS = 95
 private const val ANSWERS = 204
 
 /** Most requests in one write. */
 private const val WINDOW = 64
 
-/** One of those that are compared: it serves at a port, and connects to one. */
+/** A compared peer. It serves at a port, or connects to one. */
 internal interface Peer {
     val name: String
 
-    /** Its calls go in windows. */
+    /** `true` if calls are sent in windows. */
     val windows: Boolean
 
-    /** Serves until the process ends, and gives the port. */
+    /** Serves until the process ends. Returns the port. */
     fun serve(): Int
 
-    /** Connects, and gives what makes a call, or a window of so many. */
+    /** Connects. Returns a function that makes a call, or a window of calls. */
     suspend fun connect(port: Int, window: Int): suspend () -> Unit
 }
 
@@ -49,7 +49,7 @@ private object Package : Peer {
     override val name = "fc"
     override val windows = false
 
-    /** Answers for a station, with a message made for each call. */
+    /** Responds to queries of a station, with a new message for each call. */
     private object Robot : PartialRobot {
         override suspend fun getStation(context: Context, request: GetStationRequest): GetStationResponse = GetStationResponse {
             data(
@@ -91,7 +91,7 @@ private fun sockets(serve: (Socket) -> Unit): Int {
 
 private fun socket(port: Int) = Socket(HOST, port).apply { tcpNoDelay = true }
 
-/** As many bytes, a window of requests in one write, and nothing done with them. */
+/** The same number of bytes without processing, with a window of requests in one write. */
 private object Raw : Peer {
     override val name = "raw"
     override val windows = true
@@ -121,7 +121,7 @@ private object Raw : Peer {
     }
 }
 
-/** As many bytes by blocking sockets, one write and one read for each frame, and nothing done with them. */
+/** The same number of bytes without processing, over blocking sockets with one write and one read per frame. */
 private object Blocking : Peer {
     override val name = "blocking"
     override val windows = true
@@ -148,8 +148,8 @@ private object Blocking : Peer {
     }
 }
 
-/** All of them. */
+/** All compared peers. */
 internal val PEERS: List<Peer> = listOf(Raw, Package, Blocking)
 
-/** What calls are compared with: no gRPC is at hand, but only the least that blocking sockets need. */
+/** The reference for calls. Without gRPC for Kotlin, it is the least that blocking sockets need. */
 internal val COMPARED: String = Blocking.name

@@ -10,18 +10,18 @@ import kotlinx.coroutines.runBlocking
 
 private val system = ManagementFactory.getOperatingSystemMXBean() as OperatingSystemMXBean
 
-/** CPU time of this process so far, its collector's and its compiler's included, in microseconds. */
+/** CPU time of this process so far, including garbage collector and compiler, in microseconds. */
 private fun cpu(): Double = system.processCpuTime / 1000.0
 
-/** Serves a peer, and says at which port; then says what the process costs between `begin` and `end`. */
+/** Serves a peer and prints its port. Then prints the CPU time between `begin` and `end`. */
 internal fun serve(peer: Peer): Unit = obey(peer.serve().toString()) { it }
 
 /**
- * Calls a peer at a port: each line says how many calls at a time, and how many. The answer is the seconds that they took, and
- * the time of the middle call and of one of the slowest of a hundred in microseconds.
+ * Calls a peer at a port. Each input line has the calls in flight and the number of calls. The reply has the seconds of
+ * the round, and the median and 99th percentile of a call in microseconds.
  */
 internal fun call(peer: Peer, port: Int) {
-    // One connection for all, or one for each size of a window.
+    // One connection for all, or one per window size.
     val connections = HashMap<Int, suspend () -> Unit>()
     obey("ready") { line ->
         val (inFlight, calls) = line.split(' ').map { it.toInt() }
@@ -44,7 +44,7 @@ private fun obey(first: String, other: (String) -> String) {
     }
 }
 
-/** Makes so many calls with so many in flight. */
+/** Makes [calls] calls with [inFlight] in flight. */
 private fun drive(call: suspend () -> Unit, inFlight: Int, calls: Int): String {
     val times = LongArray(calls)
     val begun = AtomicInteger()

@@ -10,7 +10,7 @@ import fc.runtime.ReceivedReport;
 import java.util.concurrent.CompletionException;
 import java.util.concurrent.TimeUnit;
 
-/** The first call, from Java: the robot's serial number, and its reports as they come. */
+/** The first call from Java: queries the serial number of the robot, and prints its reports. */
 public final class FirstCall {
     private FirstCall() {}
 

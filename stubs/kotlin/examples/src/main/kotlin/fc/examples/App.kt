@@ -1,6 +1,6 @@
 /**
- * An app that tries out a robot: calls every command of the spec with its example, takes the robot's reports and the picture of a
- * map, and prints what came of each.
+ * An app that tests a robot. It calls every command with the example in the spec, receives the reports and the picture
+ * of a map, and prints the outcome of each.
  */
 @file:JvmName("App")
 
@@ -43,7 +43,7 @@ internal fun main(arguments: Array<String>) {
     exitProcess(if (fault == null && tour.failed == 0) 0 else 1)
 }
 
-/** What came of each operation so far. */
+/** The outcome of each operation so far. */
 private class Tour(private val isChinese: Boolean) {
     private val rows =
         arrayListOf(pick(listOf("功能码", "类型", "名称", "说明", "结果"), listOf("Code", "Kind", "Name", "Title", "Outcome")))
@@ -59,7 +59,7 @@ private class Tour(private val isChinese: Boolean) {
         receivePicture(data)
     }
 
-    /** What the language calls for. */
+    /** Returns the value in the language of the user. */
     private fun <T> pick(zh: T, en: T): T = if (isChinese) zh else en
 
     private fun add(code: Int, kind: String, name: String, title: String, outcome: String) {
@@ -77,7 +77,7 @@ private class Tour(private val isChinese: Boolean) {
         add(command.code, pick("指令", "command"), command.name, pick(command.titleZh, command.titleEn), outcome)
     }
 
-    /** Waits until every report has come once. */
+    /** Waits until every report has arrived once. */
     private suspend fun receiveAll(reports: Reports) {
         val missing = Fc.reports.associateBy { it.code }.toMutableMap()
         while (missing.isNotEmpty()) {
@@ -88,7 +88,7 @@ private class Tour(private val isChinese: Boolean) {
         }
     }
 
-    /** Waits for the picture that the call for a map image has ordered. Its digest has been verified by the time it is here. */
+    /** Waits for the picture that the call for a map image requested. The runtime has verified its digest. */
     private suspend fun receivePicture(data: DataConnection) {
         val frame = withTimeout(Arguments.PATIENCE_MILLIS) { data.receive() }
         check(frame.code == Operations.getMapImage.code) { "unexpected picture of ${frame.code}" }
@@ -105,6 +105,6 @@ private class Tour(private val isChinese: Boolean) {
         }
     }
 
-    /** Columns of a text on a terminal, where a Chinese character takes two. */
+    /** Columns of a text on a terminal. A Chinese character takes two. */
     private fun columns(text: String): Int = text.sumOf { if (it.code >= 0x2E80) 2.toInt() else 1 }
 }

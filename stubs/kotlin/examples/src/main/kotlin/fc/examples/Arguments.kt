@@ -5,7 +5,7 @@ import fc.runtime.Gzip
 import java.util.concurrent.TimeUnit
 import kotlin.system.exitProcess
 
-/** What the programs are told: the host, both ports, and what makes trials harder. */
+/** The command line: the host, both ports, and options for tests. */
 internal class Arguments(arguments: Array<String>, private val usage: String) {
     private val given = HashMap<String, String>()
 
@@ -28,7 +28,7 @@ internal class Arguments(arguments: Array<String>, private val usage: String) {
         exitProcess(2)
     }
 
-    /** The number of an option. */
+    /** Returns the number of an option. */
     private fun number(option: String, most: Int, least: Int = 0): Int? {
         val given = given[option] ?: return null
         return given.toIntOrNull()?.takeIf { it in least..most }
@@ -39,21 +39,21 @@ internal class Arguments(arguments: Array<String>, private val usage: String) {
     val commandPort: Int? get() = number("--command-port", PORTS)
     val dataPort: Int? get() = number("--data-port", PORTS)
 
-    /** What is compressed: whatever has so many bytes. */
+    /** Compresses data from this length on. */
     val gzip: Gzip get() = number("--gzip-from", Int.MAX_VALUE)?.let { Gzip(it) } ?: Gzip()
 
-    /** How long the robot takes over each command, in milliseconds. */
+    /** Time of the robot for each command, in milliseconds. */
     val delay: Long get() = number("--delay", Int.MAX_VALUE)?.toLong() ?: 0
 
-    /** How many times as wide and high the robot's picture is. */
+    /** Scale of the picture; 1 is its normal size. */
     val pictureScale: Int get() = number("--picture-scale", 100) ?: 1
 
-    /** Whether they speak Chinese, or else English: as they are told, or as POSIX has it of the environment. */
+    /** `true` for output in Chinese, `false` for English, by option or by the POSIX locale. */
     val isChinese: Boolean get() = (given["--lang"] ?: locale()).startsWith("zh")
 
     private fun locale(): String = listOf("LC_ALL", "LC_MESSAGES", "LANG").mapNotNull(System::getenv).firstOrNull { it.isNotEmpty() } ?: ""
 
-    /** The robot and the ports as settings of a client. */
+    /** Returns the address and ports as settings of a client. */
     fun client(): ClientConfig {
         var config = ClientConfig().host(host).gzip(gzip)
         number("--command-port", PORTS, least = 1)?.let { config = config.commandPort(it) }
@@ -65,7 +65,7 @@ internal class Arguments(arguments: Array<String>, private val usage: String) {
         private const val PORTS = 65_535
         private val OPTIONS = listOf("--host", "--command-port", "--data-port", "--delay", "--gzip-from", "--picture-scale", "--lang")
 
-        /** How long the programs wait for what is to come by itself. */
+        /** Longest wait for data that the robot sends unasked. */
         val PATIENCE_MILLIS: Long = TimeUnit.SECONDS.toMillis(20)
     }
 }

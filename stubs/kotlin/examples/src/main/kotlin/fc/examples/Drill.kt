@@ -1,6 +1,6 @@
 /**
- * An app for trying out a connection under trouble that somebody else makes: reads on while the connection is cut, gives calls up,
- * and calls on while the robot ends.
+ * An app that tests a connection under external disturbance. It continues to read while the connection is cut, cancels
+ * calls, and calls while the robot shuts down.
  */
 @file:JvmName("Drill")
 
@@ -24,7 +24,7 @@ From `reading` on the connection may be cut; `calling` asks for the robot to be 
 /** Calls in flight at a time. */
 private const val AT_ONCE = 64
 
-/** Reads that are to be answered though the connection is cut. */
+/** Reads that must succeed although the connection is cut. */
 private const val READS = 1000
 
 internal fun main(arguments: Array<String>) {
@@ -38,7 +38,7 @@ internal fun main(arguments: Array<String>) {
                 giveUp(client)
                 say("given up: $AT_ONCE, and the next one answered")
             }
-            // Another one, which does not come back: that the robot has ended ends its calls.
+            // A client without reconnection: the end of the robot ends its calls.
             Client.connect(told.client().reconnect(null)).use { client ->
                 say("calling")
                 say("ended: ${callToTheEnd(client)} answered, $AT_ONCE lost")
@@ -57,7 +57,7 @@ private fun say(line: String) {
     System.out.flush()
 }
 
-/** Each call is a read, so it is sent again after a loss, and every single one is answered. */
+/** Each call is a read and is repeated after a loss, so every call succeeds. */
 private suspend fun read(client: Client) {
     val left = AtomicInteger(READS)
     coroutineScope {
@@ -67,7 +67,7 @@ private suspend fun read(client: Client) {
     }
 }
 
-/** Sends calls and cancels them before an answer can have come; the connection serves on. */
+/** Sends calls and cancels them before a response can arrive. The connection remains usable. */
 private suspend fun giveUp(client: Client) {
     coroutineScope {
         // Each is sent before the next one begins.
@@ -78,8 +78,8 @@ private suspend fun giveUp(client: Client) {
 }
 
 /**
- * Calls until the robot has gone, and tells how many were answered. Every call has an end, and the end of the last ones says that
- * the connection was lost.
+ * Calls until the robot has gone, and returns the number of responses. Every call ends, and the last ones report a lost
+ * connection.
  */
 private suspend fun callToTheEnd(client: Client): Int {
     val answered = AtomicInteger()

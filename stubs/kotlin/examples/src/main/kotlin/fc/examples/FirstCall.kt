@@ -1,4 +1,4 @@
-/** The first calls, from Kotlin: a question, a command followed to its end, and a robot that has one command so far. */
+/** The first calls from Kotlin: a query, a command followed to its end, and a robot with one command. */
 @file:JvmName("FirstCallInKotlin")
 
 package fc.examples
@@ -32,7 +32,7 @@ internal suspend fun ask(config: ClientConfig): Unit = Client.connect(config).us
     }
 }
 
-/** A robot that knows its own number; all else is refused as not implemented. */
+/** A robot that returns its serial number. All other commands are refused as not implemented. */
 internal class MyRobot : PartialRobot {
     override suspend fun getRobotSn(context: Context, request: GetRobotSnRequest): GetRobotSnResponse {
         if (context.isAbandoned) throw ResultCode.TIMEOUT.refusal()

@@ -1,6 +1,7 @@
 /**
- * A robot to try an app against, and nothing else: answers every command with the spec's example, also those that would move a
- * real one, pushes every report once to each app, and sends the picture of a map over the data port to any app that asks for one.
+ * A simulated robot for testing apps. It responds to every command with the example in the spec, including commands
+ * that would move a real robot. It pushes every report once to each app. It sends the picture of a map over the data
+ * port to each app that requests one.
  */
 @file:JvmName("Robot")
 
@@ -58,7 +59,7 @@ internal fun main(arguments: Array<String>) {
         exitProcess(1)
     }
     attentive.server = server
-    // Whoever asks it to end, at any time from now on, has what is being handled answered.
+    // A signal from now on ends the robot after the responses to the current requests.
     Runtime.getRuntime().addShutdownHook(
         Thread {
             runBlocking { server.shutdown(GRACE_SECONDS, TimeUnit.SECONDS) }
@@ -70,12 +71,12 @@ internal fun main(arguments: Array<String>) {
     CountDownLatch(1).await()
 }
 
-/** What is being handled when the robot is asked to end may take so long. */
+/** Grace period for running handlers at shutdown. */
 private const val GRACE_SECONDS = 5L
 
 private fun shown(address: InetSocketAddress) = "${address.address.hostAddress}:${address.port}"
 
-/** Answers with the examples, and does what a robot does of its own accord. */
+/** Responds with the examples, and sends reports and pictures. */
 private class Attentive(private val delay: Long, private val picture: ByteArray) {
     lateinit var server: Server
     private val examples = ExampleRobot(pretendMotion = true)
@@ -102,7 +103,7 @@ private class Attentive(private val delay: Long, private val picture: ByteArray)
         return examples.getMapImage(context, request)
     }
 
-    /** Pushes every report to an app that has not been seen before. */
+    /** Pushes every report to a new app. */
     private fun meet(context: Context) {
         if (!known.add(context.connection)) return
         scope.launch { for (report in Fc.reports) push(report, context.connection) }
@@ -118,7 +119,7 @@ private class Attentive(private val delay: Long, private val picture: ByteArray)
         }
     }
 
-    /** Sends a picture to the app that has asked for one, under the id of its request. */
+    /** Sends a picture to the app that requested it, with the id of the request. */
     private suspend fun sendPicture(context: Context) {
         repeat(40) {
             try {
@@ -126,7 +127,7 @@ private class Attentive(private val delay: Long, private val picture: ByteArray)
                 println("picture of ${picture.size} bytes to ${context.connection}")
                 return
             } catch (error: PushError) {
-                // The app may ask before its data connection has been accepted.
+                // The request may arrive before the data connection of the app.
                 if (error.kind != PushErrorKind.NO_CONNECTION) return println("picture: ${error.message}")
                 delay(50)
             }
@@ -135,7 +136,7 @@ private class Attentive(private val delay: Long, private val picture: ByteArray)
     }
 }
 
-/** A small map as a portable graymap: a room with a wall around it. */
+/** Returns a small map as a portable graymap: a room with a wall around it. */
 private fun picture(scale: Int): ByteArray {
     val (width, height) = 64 * scale to 48 * scale
     val pixels = ByteArray(width * height) { index ->

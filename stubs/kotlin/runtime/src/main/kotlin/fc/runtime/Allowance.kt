@@ -1,26 +1,26 @@
 package fc.runtime
 
-/** What reading one text may cost. */
+/** Limits for reading one JSON text. */
 internal class Allowance(
-    /** Levels of nesting. */
+    /** Deepest nesting. */
     depth: Int,
-    /** Keys of objects and items of lists, those of all levels together. */
+    /** Most keys of objects and items of lists, over all levels. */
     val values: Int,
-    /** Memory for the items of lists, about, in bytes. */
+    /** Most memory for the items of lists, in bytes (an estimate). */
     val listBytes: Long,
 ) {
     val depth: Int = minOf(depth, MAX_DEPTH)
 
     companion object {
-        /** Deepest nesting that the reader follows, whatever is configured: each level takes stack. */
+        /** Deepest nesting that the reader supports, whatever the settings. Each level takes stack. */
         const val MAX_DEPTH = 127
 
         val DEFAULT: Allowance = Allowance(MAX_DEPTH, 1 shl 20, 32L shl 20)
 
-        /** For what is inside a string. */
+        /** For the text inside a string. */
         val NOTHING: Allowance = Allowance(0, Int.MAX_VALUE, Long.MAX_VALUE)
 
-        /** For text of one's own. */
+        /** For trusted text. */
         val ANY: Allowance = Allowance(MAX_DEPTH, Int.MAX_VALUE, Long.MAX_VALUE)
     }
 }

@@ -4,20 +4,20 @@ import java.nio.ByteBuffer
 import java.nio.charset.CharacterCodingException
 import java.nio.charset.StandardCharsets
 
-/** What one pass over a message with an envelope makes of it. */
+/** The outcome of reading a message with an envelope in one pass. */
 internal class Enveloped<B : Message>(
     val envelope: Message,
-    /** The message's own keys; `null` if something is wrong with them. */
+    /** The message; `null` if it has an error. */
     val body: B?,
-    /** What is. A refusal that carries nothing but an envelope is still understood. */
+    /** The error of the message. A refusal with nothing but an envelope is thus understood. */
     val fault: BodyError?,
-    /** About the memory of its lists, in bytes. */
+    /** Memory of its lists, in bytes (an estimate). */
     val listBytes: Long,
 )
 
-/** Whole bodies: bytes in, a message or an error out; and back. */
+/** Reads and writes complete bodies: bytes to messages and back. */
 internal object Bodies {
-    /** Reads a body as a message. No bytes are read as `{}`. */
+    /** Reads a body as a message. An empty body is read as `{}`. */
     fun <M : Message> decode(type: MessageType<M>, bytes: ByteArray, allowance: Allowance): M =
         reading(textOf(bytes), allowance) { reader ->
             expectObject(reader)
@@ -25,9 +25,9 @@ internal object Bodies {
         }
 
     /**
-     * Reads the keys of an envelope, of a body and unknown ones in any order, in one pass. Unknown keys go to the body.
+     * Reads the keys of an envelope and of a body in any order, in one pass. The body keeps unknown keys.
      *
-     * @throws BodyError what keeps even the envelope from being read
+     * @throws BodyError if even the envelope cannot be read
      */
     fun <B : Message> enveloped(
         envelope: MessageType<*>,
@@ -68,13 +68,13 @@ internal object Bodies {
             }
         } catch (error: BodyError) {
             if (!isBody) throw error
-            // The own keys must not cost the envelope: read it again, alone.
+            // An error of the message must not hide the envelope: read it again, alone.
             val alone = enveloped(envelope, Empty, text, allowance)
             return Enveloped(alone.envelope, null, error, 0)
         }
     }
 
-    /** The keys of an envelope and of a body as one object. */
+    /** Writes the keys of an envelope and of a body as one object. */
     fun write(envelope: Message, body: Message): ByteArray {
         val writer = JsonWriter().beginObject()
         envelope.messageType.writeFields(writer, envelope)
@@ -88,8 +88,8 @@ internal object Bodies {
     }
 
     /**
-     * A text that is not JSON is `bad_json` (or too deep, or of too many values) whatever else was wrong before that place,
-     * so that the error's name does not depend on the order in which things are looked at.
+     * Reads a text. Invalid JSON takes precedence over earlier errors, as do too deep nesting and too many values. The
+     * name of the error thus does not depend on the order of the checks.
      */
     private inline fun <T> reading(text: String, allowance: Allowance, read: (JsonReader) -> T): T {
         try {
@@ -105,7 +105,10 @@ internal object Bodies {
 
     private fun textOf(bytes: ByteArray): String = if (bytes.isEmpty()) "{}" else utf8(bytes)
 
-    /** A lenient decoder takes much less time and memory. It writes a replacement for wrong bytes, and that may also be sent. */
+    /**
+     * Decodes UTF-8. A lenient decoder takes much less time and memory. It replaces invalid bytes by U+FFFD, which a
+     * valid text may also contain.
+     */
     fun utf8(bytes: ByteArray): String {
         val text = String(bytes, StandardCharsets.UTF_8)
         if (text.indexOf(REPLACEMENT) < 0) return text

@@ -1,6 +1,6 @@
 package fc.runtime
 
-/** What is wrong with a body. The names are those of every implementation of the protocol. */
+/** The kind of an error in a body. All implementations of the protocol share the names. */
 public enum class BodyErrorKind(
     /** The fixed name. */
     public val text: String,
@@ -14,31 +14,31 @@ public enum class BodyErrorKind(
     /** The body is JSON, but not an object. */
     NOT_AN_OBJECT("not_an_object"),
 
-    /** A value of another kind than the field's. */
+    /** A value has another JSON type than its field. */
     WRONG_TYPE("wrong_type"),
 
     /** A required key is missing. */
     MISSING_FIELD("missing_field"),
 
-    /** A known key comes twice in its object. */
+    /** A known key occurs twice in its object. */
     DUPLICATE_KEY("duplicate_key"),
 
-    /** Half of a surrogate pair stands alone in a string or key that is read. */
+    /** A string or key contains an unpaired surrogate. */
     LONE_SURROGATE("lone_surrogate"),
 
-    /** A number outside the range of its type or constraint, or a value of an enum that its field does not take. */
+    /** A number is out of the range of its type or constraint, or the field excludes the enum value. */
     OUT_OF_RANGE("out_of_range"),
 
-    /** A string, list or run of bytes of a length outside its constraint. */
+    /** The length of a string, list or byte array is out of range. */
     BAD_LENGTH("bad_length"),
 
-    /** A string that does not match its pattern. */
+    /** A string does not match its pattern. */
     BAD_PATTERN("bad_pattern"),
 
-    /** A value that a closed enum does not have. */
+    /** A closed enum does not have this value. */
     UNKNOWN_VALUE("unknown_value"),
 
-    /** An object that has the required keys of no form of a choice. */
+    /** An object has the required keys of no variant of its choice. */
     NO_VARIANT("no_variant"),
 
     /** Nested deeper than the limit. */
@@ -50,22 +50,22 @@ public enum class BodyErrorKind(
     /** The items of lists take more memory than the limit. */
     LISTS_TOO_LARGE("lists_too_large"),
 
-    /** A string that is not base64 (RFC 4648, standard alphabet). */
+    /** A string is not base64 (RFC 4648, standard alphabet). */
     BAD_BASE64("bad_base64"),
 }
 
-/** A body that could not be read, or that breaks its constraints. */
+/** The error of a body that cannot be read, or that breaks its constraints. */
 public class BodyError internal constructor(
-    /** What is wrong. */
+    /** The kind of the error. */
     public val kind: BodyErrorKind,
-    /** What was found and what is wanted. */
+    /** The value that was found and the one that was expected. */
     public val detail: String,
-    /** Where in the body, such as `data.stations[3].x`; empty for the body itself. */
+    /** The path to the error, such as `data.stations[3].x`. Empty for the body itself. */
     public val path: String = "",
-    /** Characters of the text before the fault; -1 for a message that was never text. */
+    /** The offset of the error in the text, in characters. -1 for a message that was never text. */
     public val offset: Int = -1,
 ) : Exception(null, null, false, false) {
-    /** The fixed name of what is wrong, such as `missing_field`. */
+    /** The fixed name of the error, such as `missing_field`. */
     public val name: String get() = kind.text
 
     override val message: String
@@ -76,13 +76,13 @@ public class BodyError internal constructor(
             append(": ").append(detail)
         }
 
-    /** The error as seen from the object that holds it under [key]. */
+    /** Prepends [key] to the path. */
     internal fun inKey(key: String): BodyError = BodyError(kind, detail, joined(key), offset)
 
-    /** The error as seen from the list that holds it at [index]. */
+    /** Prepends [index] to the path. */
     internal fun inItem(index: Int): BodyError = BodyError(kind, detail, joined("[$index]"), offset)
 
-    /** Notes where the text was being read, unless a deeper place has been noted. */
+    /** Sets the offset, unless a deeper one is set. */
     internal fun at(offset: Int): BodyError =
         if (this.offset >= 0) this else BodyError(kind, detail, path, offset)
 
@@ -93,9 +93,9 @@ public class BodyError internal constructor(
     }
 }
 
-/** Longest quotation of what a peer has sent, in characters. */
+/** Longest quotation of data from a peer, in characters. */
 private const val LONGEST_QUOTATION = 200
 
-/** The beginning of a text that may be long. */
+/** Returns the beginning of a text that may be long. */
 internal fun shortened(text: String): String =
     if (text.length <= LONGEST_QUOTATION) text else text.take(LONGEST_QUOTATION) + "…"

@@ -1,14 +1,14 @@
 package fc.runtime
 
-/** What can go wrong with a call. The names are those of every implementation of the protocol. */
+/** The kind of a failed call. All implementations of the protocol share the names. */
 public enum class CallErrorKind(
     /** The fixed name. */
     public val text: String,
 ) {
-    /** The robot has answered, with another result than success. */
+    /** The robot responded with a result other than success. */
     REFUSED("refused"),
 
-    /** No answer in time over a connection that is still there. Whether the robot has acted is not known. */
+    /** No response in time over an intact connection. The robot may have acted. */
     TIMEOUT("timeout"),
 
     /** No connection in time; the call has not been sent. */
@@ -17,38 +17,38 @@ public enum class CallErrorKind(
     /** The connection is closed for good; the call has not been sent. */
     CLOSED("closed"),
 
-    /** The connection was lost while the call was on its way. Whether the robot has acted is not known. */
+    /** The connection was lost during the call. The robot may have acted. */
     LOST("lost"),
 
     /** Too many calls are in flight; the call has not been sent. */
     BUSY("busy"),
 
-    /** The request breaks one of its own constraints; it has not been sent. */
+    /** The request breaks one of its constraints; it has not been sent. */
     INVALID_REQUEST("invalid_request"),
 
-    /** The robot has answered something else than such a response. */
+    /** The body is not a response to this command. */
     INVALID_RESPONSE("invalid_response"),
 
-    /** The request does not fit into a frame, or the answer came in a broken one. */
+    /** The request does not fit into a frame, or the response frame is broken. */
     FRAME("frame"),
 }
 
-/** Why a call has no typed response. */
+/** The error of a failed call. */
 public class CallError internal constructor(
-    /** What went wrong. */
+    /** The kind of the error. */
     public val kind: CallErrorKind,
-    /** Why there was no connection (any more), if that is what ended the call. */
+    /** The reason of the loss, if it ended the call. */
     public val loss: Loss? = null,
     cause: Exception? = null,
     private val declared: List<DeclaredError> = emptyList(),
 ) : Exception(null, cause) {
-    /** The fixed name of what went wrong. What caused it, a [BodyError] or [FrameError], has one of its own. */
+    /** The fixed name of the error. Its cause, a [BodyError] or [FrameError], has another name. */
     public val name: String get() = kind.text
 
-    /** What the robot has answered with, if it has refused. */
+    /** The refusal of the robot, if any. */
     public val refusal: Refusal? get() = cause as? Refusal
 
-    /** Which of the errors that the command declares the robot has answered with; `null` for any other end. */
+    /** Returns the declared error of the command that the robot responded with, or `null`. */
     public fun declared(): DeclaredError? = refusal?.let { refusal -> declared.firstOrNull { it.code == refusal.code } }
 
     override val message: String
@@ -65,12 +65,12 @@ public class CallError internal constructor(
         }
 }
 
-/** Why a connection was lost, or why there is none. */
+/** The reason why a connection was lost or is not available. */
 public class Loss internal constructor(
-    /** The reason's fixed name; where the robot's bytes are no frames, that of the [FrameError]. */
+    /** The fixed name of the reason. For invalid bytes from the robot, the name of the [FrameError]. */
     public val name: String,
     private val text: String,
-    /** What the network said, or what is wrong with the frame. */
+    /** The error of the network or of the frame. */
     public val cause: Exception? = null,
 ) {
     override fun equals(other: Any?): Boolean = other is Loss && other.name == name && other.text == text

@@ -1,14 +1,14 @@
 package fc.runtime
 
 /**
- * The type of a choice: an object of the first form whose required keys are all there. Each form is a message that
- * implements [C].
+ * The type of a choice: an object of the first variant whose required keys are all present. Each variant is a message
+ * that implements [C].
  */
 public abstract class ChoiceType<C : Any> protected constructor(
-    /** Its name. */
+    /** The name in the spec. */
     public val name: String,
 ) : Codec<C>() {
-    /** Its forms, in the order in which they are tried. */
+    /** The variants, in the order in which they are tried. */
     protected abstract val forms: List<MessageType<*>>
 
     override val itemBytes: Int get() = 64
@@ -29,7 +29,10 @@ public abstract class ChoiceType<C : Any> protected constructor(
         return chosen.read(reader) as C
     }
 
-    /** Which of the keys that the forms need are there. They are few, however many keys there are. */
+    /**
+     * Returns the required keys of the variants that are present. Their number does not depend on the size of the
+     * object.
+     */
     private fun requiredKeys(reader: JsonReader): Set<String> {
         val present = HashSet<String>()
         reader.beginObject()

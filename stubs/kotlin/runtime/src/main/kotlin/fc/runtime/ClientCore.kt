@@ -2,14 +2,14 @@ package fc.runtime
 
 import java.io.IOException
 
-/** A call on its way. */
+/** A call in flight. */
 internal class CallInFlight(
     val code: Int,
     val timeout: Long,
-    /** Whether it may be sent once more after the connection was lost. */
+    /** `true` if the call may be sent once more after a loss. */
     var repeats: Boolean,
     val body: Prepared,
-    /** Told once how it ended: the body of the answer, or the error. */
+    /** Called once with the body of the response, or the error. */
     val done: (ByteArray?, CallError?) -> Unit,
 ) {
     var frame: FrameId? = null
@@ -19,14 +19,14 @@ internal class CallInFlight(
         UNSENT,
         SENT,
 
-        /** Was on its way when the connection was lost, and may be sent once more. */
+        /** In flight when the connection was lost, to be sent once more. */
         AGAIN,
     }
 
     val isToSend: Boolean get() = progress != Progress.SENT
 }
 
-/** A client without threads and sockets: all of it happens on its loop. */
+/** A client without threads and sockets. It runs on its loop alone. */
 internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val loop: Loop, private val dial: Dial) {
     private val lines = Lines(config.log, protocol) { loop.now }
     val life: Life = Life { tell(it) }
@@ -39,34 +39,34 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
     private val tries = Tries(config.reconnect)
     private val beats = Beats(protocol)
 
-    /** Data connections, which are made again with this one and end with it. */
+    /** Data connections, which follow this connection. */
     val dependents = ArrayList<DataCore>()
     private var line: Line? = null
     private var attempt: Timer? = null
     private var timer: Timer? = null
     private var armed = Long.MAX_VALUE
 
-    /** Told when there is no connection any more, not even one that says goodbye. */
+    /** Called when no connection is left, not even a closing one. */
     var onEnd: () -> Unit = {}
 
     @Volatile
     var inFlight = 0
         private set
 
-    /** If the first attempt fails, it is the only one. */
+    /** `true` if a failure of the first attempt is final. */
     private var isFirstOnly = false
 
-    /** Begins to connect; with [isFirstOnly], a first attempt that fails is the end. */
+    /** Starts to connect. With [isFirstOnly], a failure of the first attempt is final. */
     fun begin(isFirstOnly: Boolean) = loop.execute {
         this.isFirstOnly = isFirstOnly
         connect()
     }
 
-    /** Logs an exception of a listener. From any thread. */
+    /** Logs an exception of a listener. For any thread. */
     fun listenerFailed(what: String, failure: Throwable, listener: Any): Unit =
         loop.execute { lines.failed("$what failed", failure, listener) }
 
-    /** Sends a call, or has it wait for a connection. */
+    /** Sends a call, or queues it until there is a connection. */
     fun start(call: CallInFlight) {
         val now = life.now
         if (now is ConnectionState.Closed) return call.done(null, CallError(CallErrorKind.CLOSED, now.why))
@@ -78,7 +78,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         arm()
     }
 
-    /** Nobody waits for a call any more. */
+    /** Cancels a call. */
     fun cancel(call: CallInFlight) {
         call.frame?.let { session.cancel(it) }
         inFlight = session.inFlight
@@ -94,7 +94,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
 
     private fun send(call: CallInFlight) {
         val frame = checkNotNull(call.frame)
-        // Once more, and not as often as the connection is lost.
+        // A call is repeated at most once, after the first loss.
         call.repeats = call.repeats && call.progress == CallInFlight.Progress.UNSENT
         call.progress = CallInFlight.Progress.SENT
         checkNotNull(line).send(call.body, frame)
@@ -159,7 +159,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         for (data in dependents.toList()) data.commandsUp()
     }
 
-    /** The calls that wait for a connection, in the order in which they were made. */
+    /** Returns the calls that wait for a connection, in the order of the calls. */
     private fun waiting(): List<CallInFlight> {
         val found = ArrayList<CallInFlight>()
         session.endIf {
@@ -169,7 +169,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         return found.sortedBy { it.frame?.id }
     }
 
-    /** Ends the calls that must not be sent twice, and keeps the others for the next connection. */
+    /** Ends the calls that must not be sent twice. Keeps the others for the next connection. */
     private fun down(why: Loss, isForGood: Boolean) {
         val wasConnected = life.now.isConnected
         if (isForGood) {
@@ -192,7 +192,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         }
     }
 
-    // What is due.
+    // Deadlines.
 
     private fun arm() {
         val due = session.nextDue() ?: Long.MAX_VALUE
@@ -225,7 +225,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         private val stall = FrameWatch(config.stallTimeout)
         private var unreadSince = 0L
 
-        /** It gave at least one frame. */
+        /** `true` once a frame has arrived. */
         private var isHeard = false
 
         override fun reads() = true
@@ -264,7 +264,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         override fun ended(end: End) {
             lose(
                 when (end) {
-                    // A socket that is closed while a request lies unread in it is reset.
+                    // Closing a socket with an unread request resets it.
                     is End.Broken -> if (isHeard || end.isOwn) Loss.broken(end.cause) else Loss.UNHEARD
                     is End.Deaf -> end.error?.let {
                         counting.add(ClientCount.BAD_FRAMES)
@@ -310,7 +310,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
                     end(meaning.token, frame.body, null)
                 }
                 Incoming.Late -> counting.add(ClientCount.LATE_ANSWERS)
-                // Apps serve no commands, and streams have a port of their own.
+                // Apps handle no commands, and streams use the data port.
                 else -> answer(id, protocol.results.protocol.code, protocol.results.protocol.text)
             }
         }
@@ -335,7 +335,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
                 return answer(id, protocol.results.success.code, protocol.results.success.text)
             }
             if (beats.isLate(id.code, now)) counting.add(ClientCount.REPORTS_LATE)
-            // A robot that does not read must not make the app collect acknowledgements for it.
+            // A robot that does not read must not make the app collect acknowledgements.
             val missed = if (unsent >= ACKNOWLEDGE_UP_TO) -1 else queues.push(ReceivedReport(id.code, id.id, message, frame.body))
             if (missed < 0) return counting.add(ClientCount.REPORTS_REFUSED)
             counting.add(ClientCount.REPORTS)
@@ -344,7 +344,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
             answer(id, protocol.results.success.code, protocol.results.success.text)
         }
 
-        /** What the app could not read is refused here, and not acknowledged to be found out later. */
+        /** Reads a report. An unreadable report is refused instead of acknowledged. */
         private fun read(frame: Frame): Message? {
             val type = reports[frame.id.code]?.message
             val read = Bodies.enveloped(protocol.requestEnvelope, type ?: Empty, frame.body, limits.json())
@@ -352,12 +352,12 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
             return if (type == null) null else read.body
         }
 
-        /** Replies with nothing but a result; not at all where no response can carry it. */
+        /** Sends a response with a result alone. Sends nothing if responses cannot carry the result. */
         private fun answer(id: FrameId, code: Long, text: String) {
             val canSay = code == protocol.results.success.code || Envelopes.hasResult(protocol)
             if (!canSay || unsent >= ACKNOWLEDGE_UP_TO) return
             val envelope = Envelopes.response(protocol, System.currentTimeMillis(), code, text)
-            // An envelope alone fits into any frame limit worth its name; if not, the robot repeats itself.
+            // An envelope alone fits into any reasonable frame limit. Otherwise the robot repeats the request.
             val body = try {
                 encoder.prepare(Bodies.write(envelope, Empty.INSTANCE))
             } catch (_: FrameError) {
@@ -367,7 +367,7 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
         }
     }
 
-    /** Says what becomes of the connection. */
+    /** Logs a change of the state. */
     private fun tell(state: ConnectionState) {
         val robot = config.host ?: protocol.host
         when (state) {
@@ -383,12 +383,12 @@ internal class ClientCore(val protocol: Protocol, val config: ClientConfig, val 
     }
 }
 
-/** How connecting has gone of late. */
+/** The recent connection attempts. */
 internal class Tries(private val backoff: Backoff?) {
-    /** Nothing has been attempted yet: there is nothing to wait for. */
+    /** `true` before the first attempt, which needs no wait. */
     private var isFirst = true
 
-    /** Attempts in a row that did not connect. */
+    /** Consecutive failed attempts. */
     private var failed = 0
 
     /** Waits since the robot was last heard. */
@@ -398,14 +398,14 @@ internal class Tries(private val backoff: Backoff?) {
         failed++
     }
 
-    /** An attempt has connected, and the connection has ended. One that only accepts and closes is waited for longer. */
+    /** Notes the end of a connection. The wait grows for a robot that only accepts and closes. */
     fun connected(isHeard: Boolean) {
         isFirst = false
         failed = 0
         if (isHeard) waits = 0
     }
 
-    /** How long to wait before the next attempt; `null` to give up. */
+    /** Returns the wait before the next attempt, or `null` to give up. */
     fun next(): Long? {
         if (isFirst) {
             isFirst = false
@@ -419,7 +419,7 @@ internal class Tries(private val backoff: Backoff?) {
     }
 }
 
-/** The watch over the frame that is arriving: a wrong length swallows what follows, and that must not pass for progress. */
+/** Detects a stalled frame. The rate limit keeps a wrong length from passing for progress. */
 internal class FrameWatch(private val limit: Long) {
     private var begun = -1L
     private var last = 0L
@@ -432,7 +432,7 @@ internal class FrameWatch(private val limit: Long) {
         last = now
     }
 
-    /** When a frame of which `received` bytes have come stalls; never in between frames. */
+    /** Returns the time when the frame stalls after `received` bytes. Between frames, that is never. */
     fun deadline(received: Int, now: Long): Long {
         if (received == 0) {
             begun = -1
@@ -446,20 +446,20 @@ internal class FrameWatch(private val limit: Long) {
     }
 
     private companion object {
-        /** What a frame has to bring beside the stall timeout, in bytes per second. */
+        /** Least rate of a frame after the stall timeout, in bytes per second. */
         const val LEAST = 16 * 1024
     }
 }
 
-/** Whether reports that come at intervals come in time. */
+/** Detects late periodic reports. */
 internal class Beats(protocol: Protocol) {
     private val intervals = protocol.reports.filter { it.everyMillis > 0 }.associate { it.code to it.everyMillis }
     private val last = HashMap<Int, Long>()
 
-    /** A connection begins; what came over another says nothing about it. */
+    /** Starts a connection and forgets the reports of the previous one. */
     fun begin() = last.clear()
 
-    /** A report has come that was not there before: whether it is too long after the last one. */
+    /** Notes a new report. Returns `true` if it is too long after the previous one. */
     fun isLate(code: Int, now: Long): Boolean {
         val every = intervals[code] ?: return false
         val before = last.put(code, now) ?: return false

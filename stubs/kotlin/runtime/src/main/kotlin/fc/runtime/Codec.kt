@@ -4,13 +4,13 @@ import java.util.Collections
 import java.util.regex.Pattern
 
 /**
- * How values of a type are read and written, and what is demanded of them.
+ * Reads and writes values of a type, and checks their constraints.
  *
- * Those of plain types are in [Types]; a message, enum or choice is the one of its own type. Each method gives a codec of
- * the same type that demands more, or that reads and writes another form.
+ * The codecs of plain types are in [Types]. A message, enum or choice is the codec of its type. Each method returns a
+ * codec of the same type with another constraint or wire form.
  */
 public abstract class Codec<T : Any> internal constructor() {
-    /** About what an item of a list takes, in bytes. */
+    /** Memory of an item in a list, in bytes (an estimate). */
     internal open val itemBytes: Int get() = 24
 
     /** Reads the next value. */
@@ -19,22 +19,22 @@ public abstract class Codec<T : Any> internal constructor() {
     internal abstract fun write(writer: JsonWriter, value: T)
 
     /**
-     * Checks what is demanded of a value itself, and with [isDeep] of all that is inside it.
+     * Checks the constraints of a value. With [isDeep], also of everything inside it.
      *
-     * @throws BodyError if it does not hold
+     * @throws BodyError if a constraint is broken
      */
     internal open fun check(value: T, isDeep: Boolean) {}
 
-    /** The value as it can be kept: nobody else changes it any more. */
+    /** Returns the value, or a copy if other code may change it. */
     internal open fun kept(value: T): T = value
 
-    /** What travels, to be compared with what a condition asks for. */
+    /** Returns the wire value, for comparison in conditions. */
     internal open fun wire(value: T): Any = value
 
-    /** The nearest value to this number, of a type of numbers. */
+    /** Returns the number in the type of this codec. */
     internal open fun nearest(number: Long): T = throw IllegalStateException("this type has no numbers")
 
-    /** In the form that travels inside a string. */
+    /** Reads the form inside a string. */
     internal open fun readQuoted(reader: JsonReader): T = throw IllegalStateException("this type is never quoted")
 
     internal open fun readLenient(reader: JsonReader): T = throw IllegalStateException("this type is never lenient")
@@ -42,27 +42,27 @@ public abstract class Codec<T : Any> internal constructor() {
     /** `wire: string`: a number or bool inside a JSON string. */
     public fun quoted(): Codec<T> = Quoted(this)
 
-    /** `lenient`: also read from the other forms in which it is met. */
+    /** `lenient`: also reads other common forms. */
     public fun lenient(): Codec<T> = Lenient(this)
 
-    /** Not less than this. */
+    /** Sets the least value. */
     public fun min(limit: Number): Codec<T> = Bounded(this, limit, -1)
 
-    /** Not more than this. */
+    /** Sets the largest value. */
     public fun max(limit: Number): Codec<T> = Bounded(this, limit, 1)
 
-    /** So many characters, items or bytes at least, and at most. */
+    /** Sets the least and largest number of characters, items or bytes. */
     @JvmOverloads
     public fun length(least: Int, most: Int = Int.MAX_VALUE): Codec<T> = Measured(this, least, most)
 
-    /** A string that matches as a whole. */
+    /** Sets a regular expression that the whole string must match. */
     public fun pattern(pattern: String): Codec<T> = Patterned(this, pattern)
 
-    /** One of these values of an enum alone, as they travel. */
+    /** Allows only these values of an enum, given as on the wire. */
     public fun only(vararg taken: Any): Codec<T> = Only(this, taken.map { if (it is Int) it.toLong() else it })
 }
 
-/** A codec that does what another one does, but for something. */
+/** A codec that delegates to another one and changes a part. */
 internal abstract class Wrapped<T : Any>(val inner: Codec<T>) : Codec<T>() {
     override val itemBytes: Int get() = inner.itemBytes
 
@@ -104,7 +104,7 @@ private class Bounded<T : Any>(inner: Codec<T>, private val limit: Number, priva
     }
 }
 
-/** How two numbers compare, exactly; 2 where one of them is none. */
+/** Compares two numbers exactly. */
 private fun compared(value: Number, limit: Number): Int {
     if ((value is Double || value is Float) && value.toDouble().isNaN()) return if (limit.toDouble() > 0) -1 else 1
     val isFraction = value is Double || value is Float || limit is Double || limit is Float
@@ -138,7 +138,7 @@ private class Patterned<T : Any>(inner: Codec<T>, private val source: String) : 
         val matches = try {
             pattern.matcher(value as String).matches()
         } catch (_: StackOverflowError) {
-            // A text that is too long for the stack of regular expressions does not match.
+            // A text that overflows the stack of the regular expression does not match.
             false
         }
         if (!matches) throw BodyError(BodyErrorKind.BAD_PATTERN, "the string must match `$source` as a whole")

@@ -1,6 +1,6 @@
 package fc.runtime
 
-/** Under which values of the fields beside it a field is there. */
+/** The condition of a field: the values of other fields with which it is present. */
 public class Condition internal constructor(private val isWhen: Boolean, internal val asked: List<Asked>) {
     internal class Asked(val field: AnyField, val values: List<Any>)
 
@@ -14,22 +14,22 @@ public class Condition internal constructor(private val isWhen: Boolean, interna
     }
 }
 
-/** How a field contradicts its condition. */
+/** The kind of a contradiction between a field and its condition. */
 public enum class ConditionErrorKind {
-    /** It is not there although its condition holds. */
+    /** The field is missing although its condition holds. */
     MISSING,
 
-    /** It is there although its condition does not hold. */
+    /** The field is present although its condition does not hold. */
     UNASKED,
 }
 
-/** A message whose field contradicts its condition. */
+/** A field of a message contradicts its condition. */
 public class ConditionError internal constructor(
     /** The key of the field. */
     public val key: String,
-    /** Whether it is missing, or there without being asked for. */
+    /** The kind of the contradiction. */
     public val kind: ConditionErrorKind,
-    /** What is asked. */
+    /** The condition. */
     public val condition: Condition,
 ) : Exception(null, null, false, false) {
     override val message: String

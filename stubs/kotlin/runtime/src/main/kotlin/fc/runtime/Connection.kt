@@ -13,18 +13,18 @@ import kotlinx.coroutines.future.future
 import kotlinx.coroutines.launch
 import kotlinx.coroutines.suspendCancellableCoroutine
 
-/** What one call can be told; each method gives a changed copy. */
+/** The options of one call. Each method returns a changed copy. */
 public class CallOptions private constructor(internal val timeout: Long?, internal val repeat: Boolean?) {
-    /** As the connection is told. */
+    /** The defaults of the connection. */
     public constructor() : this(null, null)
 
-    /** How long to wait for the response. */
+    /** Longest wait for the response. */
     public fun timeout(timeout: Long, unit: TimeUnit): CallOptions =
         CallOptions(Settings.duration("CallOptions.timeout", timeout, unit), repeat)
 
     /**
-     * Whether to send the call once more when the connection was lost before its answer came. Unless set, only what
-     * [only reads][Effect.READ]. `true` on anything else may do it twice.
+     * Sends the call once more if the connection is lost before its response arrives. Unset: only calls with
+     * [Effect.READ] are repeated. With `true`, the robot may execute any other call twice.
      */
     public fun repeat(repeat: Boolean): CallOptions = CallOptions(timeout, repeat)
 
@@ -33,36 +33,36 @@ public class CallOptions private constructor(internal val timeout: Long?, intern
     }
 }
 
-/** Why a connection could not be made. */
+/** The error of a failed connection attempt. */
 public class ConnectError internal constructor(
     /** Host and port. */
     public val address: String,
-    /** What the network said, or that it was too late. */
+    /** The error of the network, or the timeout. */
     public val loss: Loss,
 ) : Exception("cannot connect to $address: $loss", loss.cause)
 
-/** A response as received, whose result nobody has judged. */
+/** An unchecked response, which may be a refusal. */
 public class RawResponse internal constructor(
-    /** Its result code; `null` if no response carries one. */
+    /** The result code; `null` if responses carry none. */
     public val resultCode: Long?,
-    /** The whole JSON text, envelope included. */
+    /** The complete JSON text, including the envelope. */
     public val json: String,
 ) {
     override fun toString(): String = "RawResponse(result $resultCode, ${json.length} characters)"
 }
 
 /**
- * A connection to a robot. It is made again after a loss, as its configuration says, and is open until it is [closed][close].
- * Any thread may use it.
+ * A connection to a robot. It reconnects after a loss according to its configuration, and stays open until [close]. Any
+ * thread may use it.
  */
 public class Connection internal constructor(internal val core: ClientCore, private val dataDial: Dial) : AutoCloseable {
     private val protocol = core.protocol
 
     /**
-     * Calls a command and waits for its response. A coroutine that is cancelled gives its place in flight back; the robot
-     * acts all the same once the request is on its way.
+     * Calls a command and waits for its response. Cancelling the coroutine frees the slot of the call. A request that
+     * was sent still takes effect on the robot.
      *
-     * @throws CallError if there is no such response in time
+     * @throws CallError if the call fails
      */
     @JvmSynthetic
     public suspend fun <Q : Message, A : Message> call(
@@ -74,7 +74,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
         return response(command, sent(command.code, command.effect == Effect.READ, options, body))
     }
 
-    /** [call] for Java. Cancelling the future gives the call up; it fails with a [CallError]. */
+    /** [call] for Java. Cancelling the future cancels the call. The future fails with a [CallError]. */
     @JvmOverloads
     public fun <Q : Message, A : Message> callAsync(
         command: Command<Q, A>,
@@ -83,10 +83,10 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     ): CompletableFuture<A> = SCOPE.future { call(command, request, options) }
 
     /**
-     * Calls a code with a JSON object of the request's own keys. The envelope is added. It is not sent again after a loss,
-     * unless the options say so. The result is not judged: a refusal is a response, too.
+     * Calls a code with a JSON object without envelope keys. The envelope is added. The call is repeated after a loss
+     * only if the options request it. The result is not checked: a refusal is a response, too.
      *
-     * @throws CallError of any kind but refused
+     * @throws CallError of any kind except [CallErrorKind.REFUSED]
      */
     @JvmSynthetic
     public suspend fun callRaw(code: Int, json: String, options: CallOptions = CallOptions()): RawResponse {
@@ -110,12 +110,11 @@ public class Connection internal constructor(internal val core: ClientCore, priv
         SCOPE.future { callRaw(code, json, options) }
 
     /**
-     * Calls a command, waits for its response, and then follows what it has set off: the reports of one kind that
-     * [belongs] says yes to, until one of them says that the process has ended or failed. What arrives from the moment on in
-     * which the request is sent is followed, also before the response. [Close][Following.close] what is not followed to its
-     * end.
+     * Calls a command, waits for its response, and then follows its process. The events are the reports of one kind for
+     * which [belongs] returns `true`, until a report ends the process or means a failure. They start when the request
+     * is sent, and may precede the response. [Close][Following.close] the result if you stop before the end.
      *
-     * @throws CallError those of the call; nothing is followed then
+     * @throws CallError if the call fails; then nothing is followed
      */
     @JvmSynthetic
     public suspend fun <Q : Message, A : Message, R : Message> follow(
@@ -136,15 +135,14 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     }
 
     /**
-     * The robot's reports from here on. Each receiver gets all of them, and has a queue of its own; close it when it is not
-     * needed any more. Reports are acknowledged only when a receiver has them: without one, the robot sends each again until
-     * it gives up.
+     * Returns the reports from now on. Each receiver has its own queue and gets all reports. Close it after use.
+     * Reports are acknowledged only if a receiver has them. Without one, the robot repeats each until it gives up.
      */
     public fun reports(): Reports = Reports(core.queues.enter(null))
 
     /**
-     * Calls [listener] with each report from here on, one at a time, until the result is closed. For Java. An exception of the
-     * listener is logged, and the next report reaches it all the same.
+     * Calls [listener] with each report from now on, one at a time, until the result is closed. For Java. An exception
+     * of the listener is logged, and the next report still reaches it.
      */
     public fun onReport(listener: Consumer<ReceivedReport>): AutoCloseable {
         val reports = reports()
@@ -159,40 +157,40 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     }
 
     /**
-     * A connection to the robot's data port, of this command connection and as long as it. Returns at once; the connection is
-     * made in the background. Each call makes another one.
+     * Opens a connection to the data port. It follows this command connection. Returns at once and connects in the
+     * background. Each call opens another one.
      */
     public fun data(): DataConnection = DataConnection(DataCore(core, dataDial).also { it.begin() })
 
-    /** Whether there is a connection at this moment, and why not. */
+    /** The current state of the connection. */
     public val state: ConnectionState get() = core.life.now
 
     /**
-     * The states of the connection: the present one first, then each that it comes to, and nothing after the last. Nothing is
-     * queued: who asks late gets the latest.
+     * The states of the connection, from the current one to the last. States are not queued: a late collector gets only
+     * the latest.
      */
     public fun states(): Flow<ConnectionState> = core.life.states
 
     /**
-     * Calls [listener] with the state and each that it comes to, until the result is closed. For Java. An exception of the
-     * listener is logged, and the next state reaches it all the same.
+     * Calls [listener] with the current state and each later one, until the result is closed. For Java. An exception of
+     * the listener is logged, and the next state still reaches it.
      */
     public fun onState(listener: Consumer<ConnectionState>): AutoCloseable {
         val watch = SCOPE.launch { states().collect { told("the listener of states", listener, it) } }
         return AutoCloseable { watch.cancel() }
     }
 
-    /** Waits until the connection has ended for good, and says why. */
+    /** Waits until the connection has ended for good, and returns the reason. */
     @JvmSynthetic
     public suspend fun closed(): Loss = core.life.closed()
 
-    /** How many calls are in flight. */
+    /** Number of calls in flight. */
     public val inFlight: Int get() = core.inFlight
 
-    /** What the connection has seen so far. */
+    /** The counters of the connection. */
     public val counters: ClientCounters get() = ClientCounters(core.counting.read())
 
-    /** Closes the connection. Calls in flight end as lost, and reports once their queue is empty. */
+    /** Closes the connection. Calls in flight end as lost. Reports end after the queue is empty. */
     override fun close(): Unit = core.loop.execute { core.close() }
 
     private fun <Q : Message> prepared(command: Command<Q, *>, request: Q): Prepared = encoded {
@@ -231,7 +229,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     }
 
     public companion object {
-        /** Where what Java has asked for goes on. */
+        /** Runs the calls from Java. */
         private val SCOPE = CoroutineScope(SupervisorJob() + Dispatchers.Default)
 
         /**
@@ -259,8 +257,8 @@ public class Connection internal constructor(internal val core: ClientCore, priv
             SCOPE.future { connect(protocol, config) }
 
         /**
-         * Connects over TCP in the background, and returns at once: the first connection is waited for like another one after
-         * a loss. Calls made meanwhile wait within their timeout.
+         * Returns at once and connects over TCP in the background. A failed first attempt is repeated like one after a
+         * loss. Calls made in the meantime wait within their timeout.
          */
         @JvmStatic
         @JvmOverloads
@@ -280,12 +278,12 @@ public class Connection internal constructor(internal val core: ClientCore, priv
             return Connection(core, dial(config.dataPort ?: protocol.dataPort))
         }
 
-        /** Data connections say goodbye a moment after the command connection. */
+        /** Data connections close a moment after the command connection. */
         private const val FAREWELL = 2000L
     }
 }
 
-/** A message all of whose keys are kept as they are. */
+/** A message that keeps all of its keys unchanged. */
 internal class Keys private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<Keys> get() = Keys
 

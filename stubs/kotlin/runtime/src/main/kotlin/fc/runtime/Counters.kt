@@ -2,7 +2,7 @@ package fc.runtime
 
 import java.util.concurrent.atomic.AtomicLongArray
 
-/** What a connection has seen since it was made, reconnecting included. */
+/** The counters of a connection since it was created. They continue over reconnections. */
 public class ClientCounters internal constructor(private val counts: LongArray) {
     /** Bytes received. */
     public val bytesIn: Long get() = counts[0]
@@ -10,34 +10,34 @@ public class ClientCounters internal constructor(private val counts: LongArray) 
     /** Bytes handed to the connection to be sent. */
     public val bytesOut: Long get() = counts[1]
 
-    /** Answers that reached their call. */
+    /** Responses that reached their call. */
     public val answers: Long get() = counts[2]
 
-    /** Answers nobody waited for any more. */
+    /** Responses without a waiting call. */
     public val lateAnswers: Long get() = counts[3]
 
-    /** Calls that ended without an answer in time. */
+    /** Calls that ended without a response in time. */
     public val timeouts: Long get() = counts[4]
 
     /** Reports put into the queue of at least one receiver, and acknowledged. */
     public val reports: Long get() = counts[5]
 
-    /** Reports that one receiver had no room for while another one took them, counted per receiver. */
+    /** Reports that a full receiver missed while another one took them, counted per receiver. */
     public val reportsMissed: Long get() = counts[6]
 
-    /** Reports that came again and were only acknowledged. */
+    /** Repeated reports that were only acknowledged again. */
     public val repeatedReports: Long get() = counts[7]
 
-    /** Reports left unacknowledged because no receiver had room for them, or there was none. */
+    /** Reports left unacknowledged because no receiver had room. */
     public val reportsRefused: Long get() = counts[8]
 
-    /** Reports refused because they do not read as what their code says, or have no proper envelope. */
+    /** Reports refused because their body or envelope is invalid. */
     public val reportsInvalid: Long get() = counts[9]
 
-    /** Reports that came more than one and a half of their intervals after the last of their kind. */
+    /** Reports more than one and a half intervals after the previous one with the same code. */
     public val reportsLate: Long get() = counts[10]
 
-    /** Reports that came in another order than the spec says, counted by each who follows the process. */
+    /** Reports that violate the order in the spec, counted by each follower of the process. */
     public val reportsOutOfOrder: Long get() = counts[11]
 
     /** Frames that could not be read. */
@@ -49,7 +49,7 @@ internal enum class ClientCount {
     REPORTS_INVALID, REPORTS_LATE, REPORTS_OUT_OF_ORDER, BAD_FRAMES,
 }
 
-/** What a robot has seen. */
+/** The counters of a robot. */
 public class ServerCounters internal constructor(private val counts: LongArray) {
     /** Command connections accepted. */
     public val connections: Long get() = counts[0]
@@ -60,16 +60,16 @@ public class ServerCounters internal constructor(private val counts: LongArray) 
     /** Connections closed at once because there were too many. */
     public val connectionsRefused: Long get() = counts[2]
 
-    /** Silent connections that gave way to a new one. */
+    /** Silent connections closed to make room for another. */
     public val connectionsDisplaced: Long get() = counts[3]
 
-    /** Connections closed because something did not come, or go, in time. */
+    /** Connections closed because they made no progress. */
     public val connectionsTimedOut: Long get() = counts[4]
 
-    /** Calls answered with success. */
+    /** Calls with result success. */
     public val callsAnswered: Long get() = counts[5]
 
-    /** Calls answered with another result. */
+    /** Calls with another result. */
     public val callsRefused: Long get() = counts[6]
 
     /** Calls whose handler took too long. */
@@ -81,25 +81,25 @@ public class ServerCounters internal constructor(private val counts: LongArray) 
     /** Handlers that failed with an exception other than a refusal, also after their timeout. */
     public val handlersPanicked: Long get() = counts[9]
 
-    /** Handlers that ran on though nobody waited for their answer any more. */
+    /** Handlers that continued without a waiting app. */
     public val handlersAbandoned: Long get() = counts[10]
 
-    /** Commands refused because too many handlers run on. */
+    /** Commands refused because of too many abandoned handlers. */
     public val abandonedReached: Long get() = counts[11]
 
     /** Reports acknowledged. */
     public val reportsAcknowledged: Long get() = counts[12]
 
-    /** Reports that an app has refused. */
+    /** Reports that an app refused. */
     public val reportsRefused: Long get() = counts[13]
 
     /** Reports sent again. */
     public val reportsRepeated: Long get() = counts[14]
 
-    /** Reports that were not acknowledged in time. */
+    /** Reports without an acknowledgement in time. */
     public val reportsTimedOut: Long get() = counts[15]
 
-    /** Reports that gave way to newer ones. */
+    /** Reports dropped for newer ones. */
     public val reportsDropped: Long get() = counts[16]
 
     /** Frames that could not be read. */
@@ -108,7 +108,7 @@ public class ServerCounters internal constructor(private val counts: LongArray) 
     /** Frames of streams received. */
     public val streamFramesIn: Long get() = counts[18]
 
-    /** Frames of streams that nobody took. */
+    /** Frames of streams without a receiver. */
     public val streamFramesDropped: Long get() = counts[19]
 
     /** Frames of streams sent. */
@@ -120,16 +120,16 @@ public class ServerCounters internal constructor(private val counts: LongArray) 
     /** Bytes handed to connections to be sent. */
     public val bytesOut: Long get() = counts[22]
 
-    /** Connections closed at once because nobody may connect from their address. */
+    /** Connections closed at once because their address is not allowed. */
     public val connectionsForbidden: Long get() = counts[23]
 
-    /** Calls refused because their address may not do what they do. */
+    /** Calls refused because of the address of the app. */
     public val callsForbidden: Long get() = counts[24]
 
-    /** How often a connection was not read for a while because its frames made useless work. */
+    /** Pauses of a connection after too many useless frames. */
     public val connectionsPaced: Long get() = counts[25]
 
-    /** Connections closed because memory was short and they held most of it. */
+    /** Connections closed because memory was short and they held most. */
     public val connectionsEvicted: Long get() = counts[26]
 }
 
@@ -141,7 +141,7 @@ internal enum class ServerCount {
     CONNECTIONS_PACED, CONNECTIONS_EVICTED,
 }
 
-/** Counts by name, from any thread. */
+/** Counters by name. Any thread may use them. */
 internal class Counting<E : Enum<E>>(size: Int) {
     private val counts = AtomicLongArray(size)
 

@@ -16,19 +16,19 @@ import kotlinx.coroutines.withTimeoutOrNull
 
 /** A frame of raw bytes. */
 public class StreamFrame internal constructor(
-    /** Command code: what the bytes belong to. */
+    /** Command code of the stream. */
     public val code: Int,
-    /** Message id, that of the request which they answer or prepare. */
+    /** Message id of the request that the bytes belong to. */
     public val id: Long,
-    /** The bytes. They are the receiver's own. */
+    /** The bytes. The receiver owns the array. */
     public val data: ByteArray,
 ) {
     override fun toString(): String = "StreamFrame(code=$code, id=$id, ${data.size} bytes)"
 }
 
-/** What can go wrong at the data port. */
+/** The kind of an error at the data port. */
 public enum class DataErrorKind {
-    /** The connection was lost: frames may be missing here, or may not have arrived. */
+    /** The connection was lost. Frames may be missing on either side. */
     LOST,
 
     /** No connection in time; nothing was sent. */
@@ -37,24 +37,24 @@ public enum class DataErrorKind {
     /** The connection has ended for good. */
     CLOSED,
 
-    /** A frame could not be read, or does not fit. */
+    /** A frame is broken, or the data does not fit into one. */
     FRAME,
 
     /** The robot has refused a frame. */
     REFUSED,
 
-    /** A frame arrived that does not belong on this port. */
+    /** A frame arrived that does not belong to this port. */
     UNEXPECTED,
 
-    /** What a frame carries is not JSON as its stream says, or breaks a constraint. */
+    /** The content of a frame is not JSON as specified, or breaks a constraint. */
     INVALID,
 }
 
-/** Why there is no frame here. */
+/** The error of a failed receive or send. */
 public class DataError internal constructor(
-    /** What went wrong. */
+    /** The kind of the error. */
     public val kind: DataErrorKind,
-    /** Why there is no connection, if that is what is wrong. */
+    /** The reason of the loss, if any. */
     public val loss: Loss?,
     cause: Exception? = null,
     private val detail: String = "",
@@ -74,22 +74,22 @@ public class DataError internal constructor(
 }
 
 /**
- * A connection to a robot's data port: frames of raw bytes in both directions.
+ * A connection to the data port of a robot: frames of raw bytes in both directions. It follows the command connection:
+ * it connects in the background, reconnects after a loss of either, and ends with the command connection.
  *
- * It is made in the background as soon as the command connection is there, made again after a loss and whenever the command
- * connection was, and ends with it. The protocol has no acknowledgement for such frames: what was on its way when the
- * connection was lost may have arrived or not, and each loss is told once to the receiver, and once to the sender if anything
- * was sent. Nothing is queued but one frame either way, unless something is [subscribed][subscribe] to.
+ * The protocol has no acknowledgement for these frames, so frames in transit may be lost with the connection. The
+ * receiver gets an error for each loss, and so does the sender if it has sent something. Each direction queues one
+ * frame, except for [subscriptions][subscribe].
  */
 public class DataConnection internal constructor(private val core: DataCore) : AutoCloseable {
-    /** One frame is sent at a time. */
+    /** Lets one caller send at a time. */
     private val turn = Mutex()
 
     /**
-     * Waits until there is a connection, for no longer than the call timeout. Wait for it before asking the robot for what it
-     * sends over the data port.
+     * Waits until the connection is up, at most for the call timeout. Wait for it before you request data over the data
+     * port.
      *
-     * @throws DataError not connected, or closed
+     * @throws DataError if it is not connected in time, or closed
      */
     @JvmSynthetic
     public suspend fun connected() {
@@ -102,9 +102,9 @@ public class DataConnection internal constructor(private val core: DataCore) : A
     }
 
     /**
-     * The next frame. As long as the app does not take what has arrived, the robot is not read.
+     * Returns the next frame. While the app does not take received frames, the client stops reading from the robot.
      *
-     * @throws DataError unless it says closed, the next call goes on with the next frame
+     * @throws DataError on an error; unless it is `closed`, the next call continues with the next frame
      */
     @JvmSynthetic
     public suspend fun receive(): StreamFrame = core.box.receive()
@@ -113,12 +113,12 @@ public class DataConnection internal constructor(private val core: DataCore) : A
     public fun receiveAsync(): CompletableFuture<StreamFrame> = SCOPE.future { receive() }
 
     /**
-     * The frames of one stream from now on, in a queue of four of which the oldest makes way; they no longer come to
-     * [receive].
+     * Returns the frames of one stream from now on. [receive] then skips them. The queue holds four frames, and drops
+     * the oldest when it is full.
      */
     public fun subscribe(code: Int): Subscription<ByteArray> = Subscription(core.enter(code)) { it }
 
-    /** The same of a stream that carries JSON: each frame is read as a message. */
+    /** Returns the frames of a stream of JSON, each read as a message. */
     public fun <M : Message> subscribe(code: Int, type: MessageType<M>): Subscription<M> =
         Subscription(core.enter(code)) { data ->
             try {
@@ -128,14 +128,15 @@ public class DataConnection internal constructor(private val core: DataCore) : A
             }
         }
 
-    /** How many frames to which nobody had subscribed have been dropped since this was last asked. */
+    /** Returns the number of dropped frames without a subscription since the last call. */
     public fun missed(): Long = core.box.skipped()
 
     /**
-     * Sends a frame of raw bytes: [code] says what they belong to, [id] which request they answer or prepare. Returns when the
-     * socket has taken it. Without a connection it waits for one, for no longer than the call timeout.
+     * Sends a frame of raw bytes, and waits until the socket has accepted it. [code] is the stream, [id] the request
+     * that the bytes belong to. Without a connection it waits for one, at most for the call timeout.
      *
-     * @throws DataError lost: send again from where the robot can go on; otherwise nothing was sent
+     * @throws DataError if it fails; after `lost`, send again from a point where the robot can continue; otherwise
+     *     nothing was sent
      */
     @JvmSynthetic
     public suspend fun send(code: Int, id: Long, data: ByteArray): Unit = turn.withLock {
@@ -151,7 +152,7 @@ public class DataConnection internal constructor(private val core: DataCore) : A
         }
     }
 
-    /** Sends a frame with a JSON object, without an envelope; all else is as with bytes. */
+    /** Sends a frame with a JSON object, without an envelope, like one with raw bytes. */
     @JvmSynthetic
     public suspend fun send(code: Int, id: Long, content: Message) {
         try {
@@ -168,52 +169,52 @@ public class DataConnection internal constructor(private val core: DataCore) : A
         null
     }
 
-    /** Whether there is a connection at this moment, and why not. */
+    /** The current state of the connection. */
     public val state: ConnectionState get() = core.life.now
 
-    /** The states of the connection: the present one first, then each that it comes to. */
+    /** The states of the connection, from the current one to the last. */
     public fun states(): Flow<ConnectionState> = core.life.states
 
-    /** Waits until the connection has ended for good, and says why. */
+    /** Waits until the connection has ended for good, and returns the reason. */
     @JvmSynthetic
     public suspend fun closed(): Loss = core.life.closed()
 
-    /** Closes the connection. A frame that is being sent is finished, if the robot takes it within a second. */
+    /** Closes the connection. A frame that is being sent is finished if the robot takes it within a second. */
     override fun close(): Unit = core.execute { core.close() }
 
     private companion object {
-        /** Where what Java has asked for goes on. */
+        /** Runs the calls from Java. */
         val SCOPE = CoroutineScope(SupervisorJob() + Dispatchers.Default)
     }
 }
 
-/** The frames of one stream from the receiver's creation on, each read as a [T]. Close it when it is not needed any more. */
+/** The frames of one stream since the subscription, each read as a [T]. Close it after use. */
 public class Subscription<T : Any> internal constructor(
     private val taker: DataBox.Taker,
     private val read: (ByteArray) -> T,
 ) : AutoCloseable {
     /**
-     * The next frame.
+     * Returns the next frame.
      *
-     * @throws DataError unless it says closed, the next call goes on with the next frame
+     * @throws DataError on an error; unless it is `closed`, the next call continues with the next frame
      */
     @JvmSynthetic
     public suspend fun receive(): StreamItem<T> = taker.receive().let { StreamItem(it.id, read(it.data)) }
 
-    /** The frames as a flow, which fails as [receive] does. */
+    /** The frames as a flow. It fails like [receive]. */
     public fun asFlow(): Flow<StreamItem<T>> = flow { while (true) emit(receive()) }
 
-    /** How many frames have made way for later ones since this was last asked. */
+    /** Returns the number of dropped frames since the last call. */
     public fun missed(): Long = taker.missed()
 
     /** Takes no more frames. */
     override fun close(): Unit = taker.leave()
 }
 
-/** A frame of a stream, read. */
+/** A frame of a stream, read as a message. */
 public class StreamItem<T : Any> internal constructor(
-    /** Message id, that of the request which it belongs to. */
+    /** Message id of the request that the frame belongs to. */
     public val id: Long,
-    /** What it carries. */
+    /** The content of the frame. */
     public val content: T,
 )

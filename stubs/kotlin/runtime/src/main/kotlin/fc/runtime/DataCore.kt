@@ -4,9 +4,9 @@ import java.io.IOException
 import kotlinx.coroutines.CancellableContinuation
 import kotlinx.coroutines.channels.Channel
 
-/** What arrives for the app: frames, and what is wrong in between. Filled on the loop, emptied from anywhere. */
+/** The received frames and errors for the app. The loop fills it, and any thread takes from it. */
 internal class DataBox(private val life: Life, private val onRoom: () -> Unit) {
-    /** What comes to one who takes it. */
+    /** A frame or an error. */
     sealed interface Item {
         val code: Int?
 
@@ -19,7 +19,7 @@ internal class DataBox(private val life: Life, private val onRoom: () -> Unit) {
         }
     }
 
-    /** Takes the frames of one code, with a queue in which the oldest makes way. */
+    /** A queue for the frames of one code. It drops the oldest when it is full. */
     inner class Taker(val code: Int) {
         val waiting = ArrayDeque<Item>()
         var missed = 0L
@@ -51,7 +51,7 @@ internal class DataBox(private val life: Life, private val onRoom: () -> Unit) {
     private var skipped = 0L
     private val signal = Channel<Unit>(Channel.CONFLATED)
 
-    /** Whether what comes has a place. */
+    /** Returns `true` if the next frame fits. */
     @Synchronized
     fun hasRoom(): Boolean = takers.isNotEmpty() || (inbox == null && gap == null)
 
@@ -61,7 +61,7 @@ internal class DataBox(private val life: Life, private val onRoom: () -> Unit) {
         asked.forEach { it.push(item) }
         if (asked.isNotEmpty()) return
         if (inbox != null || gap != null) {
-            // Subscribers do not wait for a receiver that there may not be.
+            // Subscribers must not wait for a receiver that may never come.
             skipped++
             return
         }
@@ -79,7 +79,7 @@ internal class DataBox(private val life: Life, private val onRoom: () -> Unit) {
         signal.trySend(Unit)
     }
 
-    /** Has all look again, as when there will be nothing more. */
+    /** Wakes all receivers, for example after the end. */
     @Synchronized
     fun wake() {
         signal.trySend(Unit)
@@ -121,21 +121,21 @@ internal class DataBox(private val life: Life, private val onRoom: () -> Unit) {
     }
 
     private companion object {
-        /** Frames waiting for one subscriber. */
+        /** Most frames that wait for one subscriber. */
         const val QUEUE = 4
     }
 }
 
-/** A frame on its way to the robot. */
+/** An outgoing frame. */
 internal class DataOut(val frame: ByteArray, val done: (DataError?) -> Unit) {
     var isBegun = false
 
-    /** Nobody waits for it any more. */
+    /** `true` if the sender has stopped waiting. */
     var isOrphan = false
     var timer: Timer? = null
 }
 
-/** A data connection of an app, without threads and sockets: all of it happens on the loop of the command connection. */
+/** The data connection of an app, without threads and sockets. It runs on the loop of the command connection. */
 internal class DataCore(private val commands: ClientCore, private val dial: Dial) {
     private val lines = Lines(commands.config.log, commands.protocol) { commands.loop.now }
     private val protocol = commands.protocol
@@ -150,20 +150,20 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
     private var line: Line? = null
     private var attempt: Timer? = null
 
-    /** The number of the command connection that the connection belongs to. */
+    /** The number of the command connection that this one belongs to. */
     private var belongsTo = 0L
 
-    /** It waits for a command connection. */
+    /** `true` while it waits for a command connection. */
     private var isWaiting = false
 
-    /** Something has been sent over this connection. */
+    /** `true` if something was sent over this connection. */
     private var hasSent = false
     private var out: DataOut? = null
 
-    /** What waits for the place of one that was given up on its way. */
+    /** The frame that waits behind an abandoned one. */
     private var next: DataOut? = null
 
-    /** A loss that the sender has not been told, after frames were sent. */
+    /** A loss after frames were sent, of which the sender does not know yet. */
     private var unsure: Loss? = null
 
     fun execute(task: () -> Unit) = loop.execute(task)
@@ -187,7 +187,7 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
         if (now is ConnectionState.Closed) end(now.why) else connect()
     }
 
-    /** There is a command connection, or another one. */
+    /** Notes a new command connection. */
     fun commandsUp() {
         val line = line
         when {
@@ -267,7 +267,7 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
         connect()
     }
 
-    /** Notes that nobody knows what has become of the frames that were sent. */
+    /** Notes that sent frames may be lost. */
     private fun abandon(why: Loss) {
         val hadSent = hasSent
         hasSent = false
@@ -306,14 +306,14 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
         line?.send(out.frame)
     }
 
-    /** Without a connection it has waited for long enough; with one, it waits for the robot to read. */
+    /** Ends the wait for a connection. With a connection, the frame continues to wait for the robot to read. */
     private fun late(out: DataOut) {
         val now = life.now
         if (out.isBegun || now !is ConnectionState.Connecting) return
         finish(out, DataError(DataErrorKind.NOT_CONNECTED, now.why))
     }
 
-    /** Nobody waits for it any more. One that has been begun is finished. */
+    /** Abandons a frame. If it has begun, it is finished. */
     fun giveUp(out: DataOut) {
         if (out.isBegun) out.isOrphan = true else finish(out, null)
     }

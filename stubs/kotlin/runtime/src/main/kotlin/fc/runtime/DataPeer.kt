@@ -5,11 +5,11 @@ import kotlinx.coroutines.channels.Channel
 import kotlinx.coroutines.flow.Flow
 import kotlinx.coroutines.flow.flow
 
-/** A frame of raw bytes that an app has sent. */
+/** A frame of raw bytes from an app. */
 public class AppStream internal constructor(
-    /** Data connection that brought it, as the audience of an answer. */
+    /** The data connection of the frame, for [Audience.one]. */
     public val connection: Long,
-    /** Address of the app; `null` of a connection that has none. */
+    /** Address of the app; `null` for a connection without an address. */
     public val peer: SocketAddress?,
     /** The frame. */
     public val frame: StreamFrame,
@@ -17,24 +17,24 @@ public class AppStream internal constructor(
     internal val bytes: Long get() = frame.data.size.toLong()
 }
 
-/** The frames of raw bytes that apps send, in the order they came on each connection. */
+/** The frames of raw bytes from apps, in the order received on each connection. */
 public class AppStreams internal constructor(private val inbox: StreamInbox, private val generation: Int) : AutoCloseable {
-    /** The next frame; `null` once the server has ended or another receiver has taken over. */
+    /** Returns the next frame, or `null` after the end of the server or after another receiver took over. */
     @JvmSynthetic
     public suspend fun receive(): AppStream? = inbox.receive(generation)
 
-    /** The frames as a flow, which ends as [receive] does. */
+    /** The frames as a flow. It ends like [receive]. */
     public fun asFlow(): Flow<AppStream> = flow { while (true) emit(receive() ?: break) }
 
-    /** Takes no more frames; from now on they are dropped. */
+    /** Takes no more frames. From now on they are dropped. */
     override fun close(): Unit = inbox.leave(generation)
 }
 
-/** Where frames of apps go: to one receiver, with room for a few. Filled on the loop, emptied from anywhere. */
+/** A short queue of frames from apps for one receiver. The loop fills it, and any thread takes from it. */
 internal class StreamInbox(private val mostBytes: Long, private val onRoom: () -> Unit) {
     private val waiting = ArrayDeque<AppStream>()
 
-    /** Bytes of the frames that wait. */
+    /** Bytes of the queued frames. */
     @Volatile
     var bytes = 0L
         private set
@@ -61,11 +61,11 @@ internal class StreamInbox(private val mostBytes: Long, private val onRoom: () -
         onRoom()
     }
 
-    /** Whether a frame that comes has a place, if only to be dropped. */
+    /** Returns `true` if a frame can be queued, or dropped without a receiver. */
     @Synchronized
     fun hasRoom(): Boolean = !isTaken || waiting.size < QUEUE && (waiting.isEmpty() || bytes < mostBytes)
 
-    /** Bytes of the frames that wait, of one connection. */
+    /** Bytes of the queued frames of one connection. */
     @Synchronized
     fun bytesOf(connection: Long): Long = waiting.sumOf { if (it.connection == connection) it.bytes else 0L }
 
@@ -76,7 +76,7 @@ internal class StreamInbox(private val mostBytes: Long, private val onRoom: () -
         waiting.removeAll { it.connection == connection }
     }
 
-    /** Whether anybody takes it. */
+    /** Queues a frame. Returns `false` if there is no receiver. */
     @Synchronized
     fun put(frame: AppStream): Boolean {
         if (!isTaken) return false
@@ -118,10 +118,10 @@ internal class StreamInbox(private val mostBytes: Long, private val onRoom: () -
     }
 }
 
-/** One app's data connection at a robot. */
+/** The data connection of one app to a robot. */
 internal class DataPeer(private val server: ServerCore, link: Link, val id: Long, val address: SocketAddress?) :
     Conversation(server.loop, link, server.config.decoder(server.protocol)), MemoryHolder {
-    /** A frame to be sent, and who waits for it to be queued. */
+    /** A frame that waits for space in the queue, with the callback for its outcome. */
     private class Out(val frame: ByteArray, val queued: (Boolean) -> Unit, val timer: Timer?)
 
     private val config = server.config
@@ -139,11 +139,11 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
     private val pace = Pace()
     private var wasReading = true
 
-    /** The command connection whose it is: [NOBODY], one, or [SEVERAL]. */
+    /** The command connection that it belongs to: [NOBODY], one, or [SEVERAL]. */
     var owner = NOBODY
         private set
 
-    /** A frame has been received. */
+    /** `true` once a frame has been received. */
     var isHeard = false
         private set
 
@@ -152,7 +152,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         owner = if (owner == NOBODY || owner == app) app else SEVERAL
     }
 
-    /** Queues a frame as soon as there is room for it; says whether it was. Nobody waits longer than the stall timeout. */
+    /** Queues a frame as soon as there is space, within the stall timeout. [queued] gets `false` otherwise. */
     fun offer(frame: ByteArray, queued: (Boolean) -> Unit) {
         if (isOver || isDraining) return queued(false)
         if (waiting.isEmpty() && hasPlace(frame)) {
@@ -217,7 +217,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
             return
         }
         isHeard = true
-        // What an app says of a frame sent to it needs no answer.
+        // A response of an app to a stream frame is only counted.
         if (id.isResponse) return
         server.counting.add(ServerCount.STREAM_FRAMES_IN)
         val stream = AppStream(this.id, address, StreamFrame(id.code, id.id, frame.body))
@@ -235,7 +235,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         if (doesRest) server.counting.add(ServerCount.CONNECTIONS_PACED)
     }
 
-    /** Replies to a frame that cannot be used; nothing is lost if there is no room for that. */
+    /** Refuses an unusable frame. Without space in the queue, the refusal is dropped. */
     private fun refuse(id: FrameId) {
         if (!Envelopes.hasResult(protocol) || queue.size >= QUEUE) return
         val result = protocol.results.protocol
@@ -243,7 +243,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         try {
             enqueue(server.encoder.prepare(Bodies.write(envelope, Empty.INSTANCE)).frame(id.answer()))
         } catch (_: FrameError) {
-            // An envelope alone fits into any frame limit worth its name.
+            // An envelope alone fits into any reasonable frame limit.
         }
     }
 
@@ -281,7 +281,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         return due
     }
 
-    /** Queues frames that wait for a place. */
+    /** Queues waiting frames while there is space. */
     private fun letIn() {
         while (!isOver) {
             val next = waiting.firstOrNull()?.takeIf { hasPlace(it.frame) } ?: return
@@ -292,7 +292,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         }
     }
 
-    /** Ends once what waits has been sent. */
+    /** Ends after the queued frames are sent. */
     fun drain() {
         isDraining = true
         wake()
@@ -330,7 +330,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
         const val NOBODY = 0L
         const val SEVERAL = -1L
 
-        /** Frames waiting for one app besides the one on its way. */
+        /** Most frames that wait for one app, in addition to the current one. */
         const val QUEUE = 4
     }
 }

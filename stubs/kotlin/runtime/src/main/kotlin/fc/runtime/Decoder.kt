@@ -1,13 +1,13 @@
 package fc.runtime
 
-/** A frame that has arrived, its data decompressed. */
+/** A received frame with decompressed data. */
 internal class Frame(val id: FrameId, val digest: ByteArray, val encoding: Int, val plainLength: Long, val body: ByteArray)
 
 /**
- * Cuts a stream of bytes into frames.
+ * Splits a stream of bytes into frames.
  *
- * What can be refused is refused as soon as it is known: a wrong head with its first wrong byte, an impossible length
- * before the data has come. Memory grows with what has really arrived.
+ * The decoder refuses invalid input early: a wrong head at its first wrong byte, an impossible length before the data
+ * has arrived. Memory grows only with bytes that have arrived.
  */
 internal class Decoder(
     private val protocol: Protocol,
@@ -23,37 +23,37 @@ internal class Decoder(
     private var end = 0
     private var failed: FrameError? = null
 
-    /** Bytes have been skipped and no frame has been found since. */
+    /** `true` if bytes were skipped and no frame has been found since. */
     private var isSearching = false
 
-    /** Bytes of frames that were tried in this search without success. */
+    /** Bytes of frames that this search has tried without success. */
     private var tried = 0L
 
-    /** Bytes decompressed beyond those that came, since it was last asked. */
+    /** Decompressed bytes in excess of the compressed ones, since the last [takeSurplus]. */
     private var surplus = 0L
 
-    /** Takes note of [surplus]. */
+    /** Returns and resets [surplus]. */
     fun takeSurplus(): Long = surplus.also { surplus = 0 }
 
-    /** Bytes received and not yet given out as frames. */
+    /** Number of received bytes that were not returned as frames yet. */
     val pending: Int get() = end - start
 
-    /** How long the frame claims to be that has begun to arrive; the length of a header while that has not come. */
+    /** The announced length of the current frame. Until it has arrived, the length of a header. */
     val expected: Long
         get() = layout.peekTotal(buffer, start, pending).let { if (it < 0) layout.length.toLong() else it }
 
-    /** Whether the frame that has begun to arrive lacks a part of its header. */
+    /** `true` if the header of the current frame is incomplete. */
     val isInsideHeader: Boolean get() = pending in 1 until layout.length
 
-    /** Bytes that its buffer takes. */
+    /** Size of the buffer, in bytes. */
     val capacity: Long get() = buffer.size.toLong()
 
-    /** Bytes of the larger buffer that pushing so many bytes takes; 0 if they fit into this one. */
+    /** Size of the larger buffer that pushing [length] bytes needs, or 0 if they fit into this one. */
     fun growth(length: Int): Long = if (pending + length <= buffer.size) 0 else grown(pending + length).toLong()
 
     private fun grown(needed: Int): Int = maxOf(needed.toLong(), minOf(2L * buffer.size, limits.frameBytes), 512L).toInt()
 
-    /** About the bytes that handing on the frame at the front takes, with its text and message; 0 if it is not whole. */
+    /** Memory for the first frame with its text and message, in bytes (an estimate). 0 if the frame is incomplete. */
     fun cost(): Long {
         val total = layout.peekTotal(buffer, start, pending)
         if (total < layout.length || total > pending) return 0
@@ -62,12 +62,12 @@ internal class Decoder(
         return if (layout.peekKind(buffer, start) == protocol.streamKind) length else READING * length
     }
 
-    /** Gives back the buffer if it is empty. */
+    /** Frees the buffer if it is empty. */
     fun tidy() {
         if (pending == 0) close()
     }
 
-    /** Forgets everything that has come. */
+    /** Forgets all received bytes. */
     fun close() {
         start = 0
         end = 0
@@ -88,9 +88,9 @@ internal class Decoder(
     }
 
     /**
-     * The next whole frame; `null` if it has not arrived yet.
+     * Returns the next complete frame, or `null` if it has not arrived yet.
      *
-     * @throws FrameError once for each frame that is skipped; again and again if it is fatal
+     * @throws FrameError once for each skipped frame; after a fatal error, on every call
      */
     fun next(): Frame? {
         failed?.let { throw it }
@@ -124,7 +124,7 @@ internal class Decoder(
         }
     }
 
-    /** The error of a stream that ends here; `null` if it may. */
+    /** Returns the error if the stream must not end here. */
     fun finish(): FrameError? = failed ?: if (pending == 0 || isSearching) {
         null
     } else {
@@ -140,7 +140,7 @@ internal class Decoder(
         }
     }
 
-    /** Header and length of the frame at the front, if all of it is there. Errors are fatal ones. */
+    /** Returns the header and length of the first frame, if it is complete. All its errors are fatal. */
     private fun locate(): Pair<Header, Int>? {
         val isRequest = opens(start, requestHead)
         if (!isRequest && !opens(start, responseHead)) throw fatal(FrameErrorKind.BAD_HEAD, NO_HEAD)
@@ -156,7 +156,7 @@ internal class Decoder(
         return layout.read(buffer, start, !isRequest) to total.toInt()
     }
 
-    /** Checks a whole frame in the order that decides which of several errors it has, and gives its data. */
+    /** Checks a complete frame and returns its data. The order decides between several errors. */
     private fun check(header: Header, from: Int, to: Int): ByteArray {
         val kind = header.id.kind
         if (kind in protocol.reservedKinds) throw skipped(FrameErrorKind.RESERVED_KIND, header, "nobody may use it yet")
@@ -202,7 +202,7 @@ internal class Decoder(
 
     private fun fatal(kind: FrameErrorKind, detail: String) = FrameError(kind, null, detail)
 
-    /** Gives up the place at the front and goes to the next that may be a head. */
+    /** Skips to the next position that may be a head. */
     private fun search() {
         var at = start + 1
         while (at < end && !opens(at, requestHead) && !opens(at, responseHead)) at++
@@ -210,18 +210,18 @@ internal class Decoder(
         consume(minOf(at, end) - start)
     }
 
-    /** Whether what has come begins like [head] at [at], as far as it goes. */
+    /** Returns `true` if the received bytes at [at] match the start of [head]. */
     private fun opens(at: Int, head: ByteArray): Boolean =
         head.indices.all { at + it >= end || buffer[at + it] == head[it] }
 
     private companion object {
-        /** How many times the longest frame a search may look through without success. */
+        /** Longest search without success, in multiples of the longest frame. */
         const val SEARCH = 4L
 
-        /** A body, its text and its message. */
+        /** Memory of a body, its text and its message, in multiples of the body. */
         const val READING = 3L
 
-        /** Memory that an empty buffer keeps, in bytes. */
+        /** Capacity that an empty buffer keeps, in bytes. */
         const val KEEP = 64 * 1024
         const val NO_HEAD = "no frame begins here"
     }

@@ -1,6 +1,6 @@
 package fc.runtime
 
-/** A body that is packed and digested already, to be sent any number of times. */
+/** A compressed and digested body that can be sent any number of times. */
 internal class Prepared(
     private val protocol: Protocol,
     private val encoding: Int,
@@ -8,27 +8,27 @@ internal class Prepared(
     private val digest: ByteArray,
     val data: ByteArray,
 ) {
-    /** The header of a frame with this body. */
+    /** Returns the header of a frame with this body. */
     fun header(id: FrameId): ByteArray {
         val head = if (id.isResponse) protocol.responseHead else protocol.requestHead
         val header = Header(id, encoding, plainLength.toLong(), digest)
         return protocol.header.write(head.toByteArray(), header, length.toLong())
     }
 
-    /** Length of the whole frame. */
+    /** Length of the complete frame. */
     val length: Int get() = protocol.header.length + data.size
 
-    /** A whole frame. */
+    /** Returns the complete frame. */
     fun frame(id: FrameId): ByteArray {
         val header = header(id)
         return header.copyOf(header.size + data.size).also { data.copyInto(it, header.size) }
     }
 }
 
-/** Makes frames of bodies. */
+/** Creates frames from bodies. */
 internal class Encoder(private val protocol: Protocol, private val frameBytes: Long, private val gzip: Gzip?) {
     /**
-     * Packs and digests a body.
+     * Compresses and digests a body.
      *
      * @throws FrameError `frame_too_long`
      */

@@ -1,9 +1,6 @@
 package fc.runtime
 
-/**
- * A value of an enum that travels as an integer. An open enum also has values that the spec does not name: they are kept as
- * they came.
- */
+/** A value of an enum that is sent as an integer. An open enum keeps values that the spec does not define. */
 public abstract class IntValue protected constructor(
     /** The value on the wire. A `u64` has the same bits in the `Long`. */
     public val wire: Long,
@@ -11,10 +8,10 @@ public abstract class IntValue protected constructor(
     /** The type of this value. */
     protected abstract val enumType: EnumType<*>
 
-    /** Its name in the spec; `null` if the spec does not know it. */
+    /** The name in the spec; `null` if the spec does not define the value. */
     public val name: String? get() = enumType.nameOf(wire)
 
-    /** Whether the spec knows it. */
+    /** `true` if the spec defines the value. */
     public val isKnown: Boolean get() = name != null
 
     override fun equals(other: Any?): Boolean = other is IntValue && other.enumType === enumType && other.wire == wire
@@ -24,18 +21,18 @@ public abstract class IntValue protected constructor(
     override fun toString(): String = name ?: "${enumType.name}($wire)"
 }
 
-/** A value of an enum that travels as a text, as [IntValue] is one of an integer. */
+/** A value of an enum that is sent as a string. See [IntValue]. */
 public abstract class TextValue protected constructor(
-    /** What travels. */
+    /** The value on the wire. */
     public val wire: String,
 ) {
     /** The type of this value. */
     protected abstract val enumType: EnumType<*>
 
-    /** Its name in the spec; `null` if the spec does not know it. */
+    /** The name in the spec; `null` if the spec does not define the value. */
     public val name: String? get() = enumType.nameOf(wire)
 
-    /** Whether the spec knows it. */
+    /** `true` if the spec defines the value. */
     public val isKnown: Boolean get() = name != null
 
     override fun equals(other: Any?): Boolean = other is TextValue && other.enumType === enumType && other.wire == wire
@@ -45,15 +42,15 @@ public abstract class TextValue protected constructor(
     override fun toString(): String = name ?: "${enumType.name}(\"$wire\")"
 }
 
-/** The type of an enum: the values that the spec names. */
+/** The type of an enum, with the values in the spec. */
 public abstract class EnumType<E : Any> internal constructor(
-    /** Its name. */
+    /** The name in the spec. */
     public val name: String,
     private val isClosed: Boolean,
 ) : Codec<E>() {
     private val named = LinkedHashMap<Any, Pair<String, E>>()
 
-    /** All values that the spec names, in its order. */
+    /** All values in the spec, in order. */
     public val values: List<E> get() = named.values.map { it.second }
 
     internal fun nameOf(wire: Any): String? = named[wire]?.first
@@ -62,7 +59,7 @@ public abstract class EnumType<E : Any> internal constructor(
 
     internal fun known(wire: Any): E? = named[wire]?.second
 
-    /** The value that travels so; of a closed enum only one that the spec names. */
+    /** Returns the value with this wire form. A closed enum refuses unknown values. */
     internal inline fun taken(reader: JsonReader, start: Int, wire: Any, make: () -> E): E {
         known(wire)?.let { return it }
         if (!isClosed) return make()
@@ -76,7 +73,7 @@ public abstract class EnumType<E : Any> internal constructor(
     }
 }
 
-/** The type of an enum that travels as an integer of [kind]. */
+/** The type of an enum that is sent as an integer of [kind]. */
 public abstract class IntEnumType<E : IntValue> protected constructor(
     name: String,
     private val kind: Codec<out Number>,
@@ -84,13 +81,13 @@ public abstract class IntEnumType<E : IntValue> protected constructor(
 ) : EnumType<E>(name, isClosed) {
     override val itemBytes: Int get() = 8
 
-    /** A value that the spec may not know. */
+    /** Creates a value, which may be unknown. */
     protected abstract fun create(wire: Long): E
 
-    /** A value that the spec names. */
+    /** Adds a value of the spec. */
     protected fun named(wire: Long, name: String): E = add(wire, name, create(wire))
 
-    /** The value that travels so. */
+    /** Returns the value with this wire form. */
     public open fun of(wire: Long): E = known(wire) ?: create(wire)
 
     override fun read(reader: JsonReader): E = reading(reader) { kind.read(reader) }
@@ -112,7 +109,7 @@ public abstract class IntEnumType<E : IntValue> protected constructor(
 
     @Suppress("UNCHECKED_CAST")
     override fun check(value: E, isDeep: Boolean) {
-        // Every `Long` is a `u64`.
+        // Every `Long` is a valid `u64`.
         if (!isUnsigned) (kind as Codec<Number>).check(value.wire, isDeep)
         checkClosed(value.wire)
     }
@@ -122,20 +119,20 @@ public abstract class IntEnumType<E : IntValue> protected constructor(
     override fun wire(value: E): Any = value.wire
 }
 
-/** The type of an enum that travels as a text. */
+/** The type of an enum that is sent as a string. */
 public abstract class TextEnumType<E : TextValue> protected constructor(
     name: String,
     isClosed: Boolean = false,
 ) : EnumType<E>(name, isClosed) {
     override val itemBytes: Int get() = 32
 
-    /** A value that the spec may not know. */
+    /** Creates a value, which may be unknown. */
     protected abstract fun create(wire: String): E
 
-    /** A value that the spec names. */
+    /** Adds a value of the spec. */
     protected fun named(wire: String, name: String): E = add(wire, name, create(wire))
 
-    /** The value that travels so. */
+    /** Returns the value with this wire form. */
     public open fun of(wire: String): E = known(wire) ?: create(wire)
 
     override fun read(reader: JsonReader): E {
@@ -216,5 +213,5 @@ public class Steps(private val type: EnumType<*>, private val order: StateOrder)
     }
 }
 
-/** Whether two values are the same, or one of them is not said: what is not said tells nothing apart. */
+/** Returns `true` unless both values are present and differ. */
 public fun sameOrUnsaid(one: Any?, other: Any?): Boolean = one == null || other == null || one == other

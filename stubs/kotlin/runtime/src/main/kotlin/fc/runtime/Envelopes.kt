@@ -1,6 +1,6 @@
 package fc.runtime
 
-/** The keys that every request and response has beside its own. */
+/** The envelope keys of requests and responses. */
 internal object Envelopes {
     fun request(protocol: Protocol, timeMs: Long): Message = make(protocol.requestEnvelope) { role ->
         if (role == EnvelopeRole.TIME) timeMs else null
@@ -23,20 +23,20 @@ internal object Envelopes {
         return type.make(values, Extra.NONE)
     }
 
-    /** Whether responses carry a result code. If not, what did not go well is not answered. */
+    /** Returns `true` if responses carry a result code. Otherwise failures get no response. */
     fun hasResult(protocol: Protocol): Boolean = protocol.responseEnvelope.roleField(EnvelopeRole.RESULT_CODE) != null
 
-    /** Returns `true` if a result code is a value of its field. Without such a field, none is sent. */
+    /** Returns `true` if the field of the result code accepts a code. Without such a field, none is sent. */
     fun carries(protocol: Protocol, code: Long): Boolean {
         val field = protocol.responseEnvelope.roleField(EnvelopeRole.RESULT_CODE) ?: return true
         return (field.codec.nearest(code) as? Number)?.toLong() == code
     }
 
-    /** The result code of a response; `null` if it has none. */
+    /** Returns the result code of a response, or `null` if it has none. */
     fun resultCode(protocol: Protocol, envelope: Message): Long? =
         (value(protocol.responseEnvelope, envelope, EnvelopeRole.RESULT_CODE) as Number?)?.toLong()
 
-    /** What a response says has gone wrong, if it says so. */
+    /** Returns the refusal in a response, if any. */
     fun refusal(protocol: Protocol, envelope: Message): Refusal? {
         val code = resultCode(protocol, envelope) ?: return null
         if (code == protocol.results.success.code) return null
@@ -44,7 +44,7 @@ internal object Envelopes {
         return Refusal(code, text ?: "")
     }
 
-    /** When a message was made, if it says so. */
+    /** Returns the creation time of a message, if its envelope has one. */
     fun time(type: MessageType<*>, envelope: Message): Long? = (value(type, envelope, EnvelopeRole.TIME) as Number?)?.toLong()
 
     private fun value(type: MessageType<*>, envelope: Message, role: EnvelopeRole): Any? =

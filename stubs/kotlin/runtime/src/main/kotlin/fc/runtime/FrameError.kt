@@ -1,16 +1,16 @@
 package fc.runtime
 
-/** What is wrong with a frame. The names are those of every implementation of the protocol. */
+/** The kind of an error in a frame. All implementations of the protocol share the names. */
 public enum class FrameErrorKind(
     /** The fixed name. */
     public val text: String,
-    /** Whether the place of the next frame is lost, so that the connection has to be closed. */
+    /** `true` if the start of the next frame is unknown, so that the connection must be closed. */
     public val isFatal: Boolean,
 ) {
-    /** The bytes where a frame has to begin are no head. */
+    /** No frame begins here. */
     BAD_HEAD("bad_head", true),
 
-    /** The total length is less than that of a header. */
+    /** The total length is less than the header. */
     SHORT_FRAME("short_frame", true),
 
     /** The total length exceeds the limit. */
@@ -19,54 +19,54 @@ public enum class FrameErrorKind(
     /** The input ended inside a frame. */
     TRUNCATED("truncated", true),
 
-    /** The kind is none of the protocol's. */
+    /** The protocol does not define this kind. */
     UNKNOWN_KIND("unknown_kind", false),
 
     /** The kind is reserved for later versions of the protocol. */
     RESERVED_KIND("reserved_kind", false),
 
-    /** The data is packed in a way that the protocol does not know. */
+    /** The protocol does not define this encoding. */
     UNKNOWN_ENCODING("unknown_encoding", false),
 
-    /** The digest is not that of the data. */
+    /** The digest does not match the data. */
     BAD_DIGEST("bad_digest", false),
 
-    /** The data is not one whole gzip member. */
+    /** The data is not one complete gzip member. */
     BAD_GZIP("bad_gzip", false),
 
-    /** The data has another length than the header says it has before compression. */
+    /** The length before compression does not match the data. */
     PLAIN_LENGTH_MISMATCH("plain_length_mismatch", false),
 
-    /** The data would be longer than the limit after decompression. */
+    /** The decompressed data exceeds the limit. */
     INFLATED_TOO_LONG("inflated_too_long", false),
 
-    /** The data would grow by more than text does when it is inflated. */
+    /** The compression ratio exceeds the limit. */
     INFLATES_TOO_MUCH("inflates_too_much", false),
 }
 
 /**
- * A frame that cannot be handed on, or one that cannot be sent.
+ * The error of a frame that cannot be read or sent.
  *
- * After a [fatal][FrameErrorKind.isFatal] one nobody knows where the next frame begins. After any other, that frame has
- * been skipped, and [frame] says what to answer to.
+ * After a [fatal][FrameErrorKind.isFatal] error, the start of the next frame is unknown. After any other, the frame was
+ * skipped, and [frame] identifies it for a response.
  */
 public class FrameError internal constructor(
-    /** What is wrong. */
+    /** The kind of the error. */
     public val kind: FrameErrorKind,
-    /** The frame that was skipped; `null` after a fatal error. */
+    /** The skipped frame; `null` after a fatal error. */
     public val frame: FrameId?,
     private val detail: String,
 ) : Exception(null, null, false, false) {
-    /** The fixed name of what is wrong, such as `bad_digest`. */
+    /** The fixed name of the error, such as `bad_digest`. */
     public val name: String get() = kind.text
 
     override val message: String
         get() = if (frame == null) "$name: $detail" else "$name in the $frame: $detail"
 }
 
-/** Which message a frame belongs to: what an answer to it has to echo. */
+/** The fields that match a response or acknowledgement with its request or report. */
 public class FrameId(
-    /** Whether the frame opens with the head of responses. */
+    /** `true` for a frame with the head of responses. */
     public val isResponse: Boolean,
     /** Kind of the data. */
     public val kind: Int,
@@ -75,7 +75,7 @@ public class FrameId(
     /** Message id. */
     public val id: Long,
 ) {
-    /** The id of an answer to this frame: it echoes everything but the head. */
+    /** Returns the id of a response to this frame: the same except for the head. */
     public fun answer(): FrameId = FrameId(true, kind, code, id)
 
     override fun equals(other: Any?): Boolean =

@@ -5,9 +5,9 @@ import java.util.zip.DataFormatException
 import java.util.zip.Deflater
 import java.util.zip.Inflater
 
-/** When and how hard to compress what is sent. What compression does not make shorter is sent plain. */
+/** Threshold and level of the compression of sent frames. Data that does not shrink is sent uncompressed. */
 public class Gzip @JvmOverloads constructor(
-    /** Least length of the data area that is compressed, in bytes. */
+    /** Least length of data to compress, in bytes. */
     public val fromBytes: Int = 1024,
     /** 1 (fast) to 9 (small). */
     public val level: Int = 1,
@@ -18,7 +18,7 @@ public class Gzip @JvmOverloads constructor(
     }
 }
 
-/** Makes a gzip member of [data]; `null` if that is not shorter. */
+/** Compresses [data] into a gzip member. Returns `null` if that is not shorter. */
 internal fun deflated(data: ByteArray, level: Int): ByteArray? {
     val room = data.size - GZIP_HEADER.size - GZIP_TRAILER
     if (room <= 0) return null
@@ -39,7 +39,7 @@ internal fun deflated(data: ByteArray, level: Int): ByteArray? {
     }
 }
 
-/** What the data of a frame is inflated to, or the error that it is not. */
+/** The outcome of a decompression. */
 internal sealed interface Inflated {
     class Data(val bytes: ByteArray) : Inflated
 
@@ -51,8 +51,8 @@ internal sealed interface Inflated {
 }
 
 /**
- * Inflates one gzip member, which has to be exactly [plain] bytes long. Memory grows with what really comes out, and
- * never beyond [plain] bytes.
+ * Decompresses one gzip member, which must be exactly [plain] bytes long. Memory grows only with the actual output, up
+ * to [plain] bytes.
  */
 internal fun inflated(bytes: ByteArray, from: Int, to: Int, plain: Int): Inflated {
     val start = behindHeader(bytes, from, to)
@@ -64,7 +64,7 @@ internal fun inflated(bytes: ByteArray, from: Int, to: Int, plain: Int): Inflate
         var filled = 0
         while (!inflater.finished()) {
             if (filled == plain) {
-                // Full. The stream has to end here; a byte more is one too many.
+                // The buffer is full. A stream that continues here is too long.
                 if (inflater.inflate(ByteArray(1)) > 0) return Inflated.OtherLength
                 if (!inflater.finished()) return Inflated.Damaged
                 break
@@ -90,7 +90,7 @@ internal fun inflated(bytes: ByteArray, from: Int, to: Int, plain: Int): Inflate
 private val GZIP_HEADER = byteArrayOf(0x1F, 0x8B.toByte(), 8, 0, 0, 0, 0, 0, 0, 0xFF.toByte())
 private const val GZIP_TRAILER = 8
 
-/** Growth of the buffer for inflated data. Each larger buffer leaves garbage. */
+/** Growth factor of the output buffer. Each larger buffer leaves garbage. */
 private const val GROWTH = 8L
 
 private fun putLittle(bytes: ByteArray, at: Int, value: Long) {
@@ -100,7 +100,10 @@ private fun putLittle(bytes: ByteArray, at: Int, value: Long) {
 private fun little(bytes: ByteArray, at: Int): Long =
     (3 downTo 0).fold(0L) { value, index -> value shl 8 or (bytes[at + index].toLong() and 0xFF) }
 
-/** Where the header of a member ends, with the optional fields that some compressors write; -1 if there is none. */
+/**
+ * Returns the end of the header of a member, including optional fields that some compressors write. -1 if there is
+ * none.
+ */
 private fun behindHeader(bytes: ByteArray, from: Int, to: Int): Int {
     if (to - from < GZIP_HEADER.size || (0 until 3).any { bytes[from + it] != GZIP_HEADER[it] }) return -1
     val flags = bytes[from + 3].toInt()

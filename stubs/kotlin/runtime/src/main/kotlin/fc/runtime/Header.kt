@@ -3,9 +3,9 @@ package fc.runtime
 import java.security.MessageDigest
 import java.util.zip.CRC32
 
-/** What the runtime uses a field of the header for. */
+/** The role of a field of the header. */
 public enum class HeaderRole {
-    /** The bytes that open a frame. */
+    /** First bytes of a frame. */
     HEAD,
 
     /** Kind of the data. */
@@ -17,7 +17,7 @@ public enum class HeaderRole {
     /** Message id. */
     ID,
 
-    /** How the data is packed. */
+    /** Encoding of the data. */
     ENCODING,
 
     /** Length of the whole frame. */
@@ -29,11 +29,11 @@ public enum class HeaderRole {
     /** Digest of the data as sent. */
     DIGEST,
 
-    /** Travels, and is never interpreted. */
+    /** Sent, but never interpreted. */
     STATUS,
 }
 
-/** How the data of a frame is digested. */
+/** The digest algorithm. */
 public enum class DigestAlgorithm(internal val size: Int) {
     /** MD5 (RFC 1321). */
     MD5(16),
@@ -58,24 +58,24 @@ public class HeaderField private constructor(
     internal val algorithm: DigestAlgorithm?,
 ) {
     public companion object {
-        /** An integer of [size] bytes, or as many bytes as they come where [role] is the head. */
+        /** Returns an integer of [size] bytes. For the head, [size] raw bytes. */
         @JvmStatic
         public fun of(role: HeaderRole, size: Int): HeaderField = HeaderField(role, size, 0, null)
 
-        /** An integer that is always sent with the same value. */
+        /** Returns an integer that is always sent with the same value. */
         @JvmStatic
         public fun constant(size: Int, value: Long): HeaderField = HeaderField(HeaderRole.STATUS, size, value, null)
 
-        /** The digest of the data as sent. */
+        /** Returns the digest of the data as sent. */
         @JvmStatic
         public fun digest(algorithm: DigestAlgorithm): HeaderField =
             HeaderField(HeaderRole.DIGEST, algorithm.size, 0, algorithm)
     }
 }
 
-/** The fixed bytes in front of the data area of every frame: its [fields] in the order in which they travel. */
+/** The fixed bytes in front of the data of every frame: its [fields] in wire order. */
 public class HeaderLayout(
-    /** Whether the most significant byte of an integer travels first. */
+    /** `true` for integers with the most significant byte first. */
     public val isBigEndian: Boolean,
     fields: List<HeaderField>,
 ) {
@@ -91,7 +91,7 @@ public class HeaderLayout(
     private val plain = place(HeaderRole.PLAIN_LENGTH)
     private val digest = place(HeaderRole.DIGEST)
 
-    /** Its length in bytes. */
+    /** Length in bytes. */
     public val length: Int = fields.sumOf { it.size }
 
     /** Largest message id. */
@@ -101,10 +101,10 @@ public class HeaderLayout(
     private fun largest(field: Int): Long =
         if (fields[field].size >= Long.SIZE_BYTES) Long.MAX_VALUE else (1L shl (8 * fields[field].size)) - 1
 
-    /** Checks a command code by the size of its field. */
+    /** Checks a command code against the size of its field. */
     internal fun checkCode(code: Int): Long = Settings.long("code", code.toLong(), 0, largest(this.code))
 
-    /** Checks a message id by the size of its field. */
+    /** Checks a message id against the size of its field. */
     internal fun checkId(id: Long): Long = Settings.long("id", id, 0, idMax)
 
     private fun place(role: HeaderRole): Int = fields.indexOfFirst { it.role == role }
@@ -127,17 +127,17 @@ public class HeaderLayout(
         }
     }
 
-    /** The total length of the frame that begins at [start], once that field is among the [available] bytes; or -1. */
+    /** Returns the total length of the frame at [start], or -1 if the field is not among the [available] bytes. */
     internal fun peekTotal(bytes: ByteArray, start: Int, available: Int): Long =
         if (available < offsets[total] + fields[total].size) -1 else get(bytes, start, total)
 
-    /** The kind of the frame whose header begins at [start]. */
+    /** Returns the kind of the frame at [start]. */
     internal fun peekKind(bytes: ByteArray, start: Int): Int = get(bytes, start, kind).toInt()
 
-    /** The encoding of the frame whose header begins at [start]. */
+    /** Returns the encoding of the frame at [start]. */
     internal fun peekEncoding(bytes: ByteArray, start: Int): Int = if (encoding < 0) 0 else get(bytes, start, encoding).toInt()
 
-    /** The plain length of the frame whose header begins at [start]; 0 without such a field. */
+    /** Returns the plain length of the frame at [start], or 0 without such a field. */
     internal fun peekPlain(bytes: ByteArray, start: Int): Long = if (plain < 0) 0 else get(bytes, start, plain)
 
     internal fun read(bytes: ByteArray, start: Int, isResponse: Boolean): Header {
@@ -150,7 +150,7 @@ public class HeaderLayout(
         )
     }
 
-    /** In the order of the algorithm, also where integers travel the other way round. */
+    /** Returns the digest in the byte order of the algorithm, even if integers have another one. */
     private fun digest(bytes: ByteArray, from: Int): ByteArray =
         bytes.copyOfRange(from, from + fields[digest].size).also { if (turns()) it.reverse() }
 
@@ -178,5 +178,5 @@ public class HeaderLayout(
     }
 }
 
-/** What a header says. */
+/** The fields of a frame header. */
 internal class Header(val id: FrameId, val encoding: Int, val plainLength: Long, val digest: ByteArray)

@@ -3,21 +3,21 @@ package fc.runtime
 import java.math.BigInteger
 
 /**
- * Reads JSON text (RFC 8259), directed by the type that is wanted. Every method skips the white space in front of a
- * value and stops right behind it.
+ * Reads JSON text (RFC 8259) by the expected type. Every method skips the white space in front of a value and stops
+ * right after it.
  */
 internal class JsonReader(val text: String, allowance: Allowance) {
-    /** Characters read. */
+    /** Number of characters read. */
     var at: Int = 0
     private var depth = allowance.depth
     private var values = allowance.values
     private val mostListBytes = allowance.listBytes
     private var listBytes = mostListBytes
 
-    /** Memory of the lists that were read, about, in bytes. */
+    /** Memory of the lists read so far, in bytes (an estimate). */
     val spentListBytes: Long get() = mostListBytes - listBytes
 
-    /** Skips white space and tells the next character; [END] behind the last. */
+    /** Skips white space and returns the next character, or [END] at the end. */
     fun peek(): Char {
         while (at < text.length) {
             val next = text[at]
@@ -57,7 +57,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
         return false
     }
 
-    /** Looks ahead: whatever is read, the reader is then where it was. */
+    /** Looks ahead, and restores the position afterwards. */
     fun <T> ahead(look: () -> T): T {
         val before = Place(at, depth, values, listBytes)
         val found = look()
@@ -76,7 +76,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
         else -> throw unexpected("true or false")
     }
 
-    /** Reads a value and gives its text. */
+    /** Reads a value and returns its text. */
     fun valueText(): String {
         peek()
         val start = at
@@ -84,7 +84,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
         return text.substring(start, at)
     }
 
-    /** Reads a value and forgets it. */
+    /** Skips a value. */
     fun skipValue() {
         when (peek()) {
             '"' -> skipString()
@@ -116,7 +116,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
 
     // Objects.
 
-    /** Enters an object and stops at its first key or its closing brace. Gives the place of the opening one. */
+    /** Enters an object and stops at its first key or its closing brace. Returns the offset of the opening brace. */
     fun beginObject(): Int {
         if (peek() != '{') throw unexpected("an object")
         val start = at
@@ -143,7 +143,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
         at++
     }
 
-    /** Reads what follows a value in an object: a comma, up to the next key, or nothing, up to the closing brace. */
+    /** Reads from the end of a value up to the next key or the closing brace. */
     fun endValue() {
         when (peek()) {
             ',' -> {
@@ -169,7 +169,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
         return ends
     }
 
-    /** Reads what follows an item; whether another one comes. */
+    /** Reads the separator after an item. Returns `true` if another item follows. */
     fun nextItem(): Boolean = when (peek()) {
         ',' -> {
             at++
@@ -182,7 +182,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
         else -> throw badJson("`,` or `]` is expected after an item")
     }
 
-    /** Reads a list, of which each item takes about [itemBytes]. */
+    /** Reads a list with about [itemBytes] bytes of memory per item. */
     inline fun <T> list(itemBytes: Int, read: () -> T): List<T> {
         beginList()
         if (endList()) return emptyList()
@@ -320,7 +320,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
 
     // Numbers.
 
-    /** Reads a number and gives its text. */
+    /** Reads a number and returns its text. */
     fun number(): String {
         val start = at
         if (here() == '-') at++
@@ -375,7 +375,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
     fun outOfRange(range: IntRangeOf): BodyError =
         fault(BodyErrorKind.OUT_OF_RANGE, "the number must be from ${range.min} to ${range.max}")
 
-    /** Reads a floating-point number; `parse` makes it of its text. */
+    /** Reads a floating-point number. [parse] converts its text. */
     inline fun <T> float(parse: (String) -> T, isFinite: (T) -> Boolean): T {
         val first = peek()
         if (first != '-' && first !in '0'..'9') throw unexpected("a number")
@@ -388,13 +388,13 @@ internal class JsonReader(val text: String, allowance: Allowance) {
         return value
     }
 
-    /** Checks that nothing but white space is left. */
+    /** Checks that only white space is left. */
     fun end() {
         peek()
         if (at < text.length) throw badJson("nothing may follow the value")
     }
 
-    // Faults.
+    // Errors.
 
     fun fault(kind: BodyErrorKind, detail: String): BodyError = BodyError(kind, detail, "", at)
 
@@ -415,16 +415,19 @@ internal class JsonReader(val text: String, allowance: Allowance) {
     }
 
     internal companion object {
-        /** Behind the last character. A text that holds it ends there with a fault, since that is not JSON. */
+        /** The character after the last. Since it is not valid JSON, a text that contains it fails there. */
         const val END: Char = '\u0000'
 
-        /** Any integer of so many characters fits into 64 bits. */
+        /** Any integer with this many characters fits into 64 bits. */
         private const val SAFE_LENGTH = 18
 
         /** More digits than any integer type has. */
         private const val MANY_DIGITS = 40L
 
-        /** The integer that a number amounts to; `null` for a fraction. What is far beyond any type comes out far beyond. */
+        /**
+         * Returns the integer value of a number, or `null` for a fraction. A value far out of range remains far out of
+         * range.
+         */
         fun amount(number: String): BigInteger? {
             val negative = number.startsWith("-")
             val mark = number.indexOfFirst { it == 'e' || it == 'E' }
@@ -445,13 +448,13 @@ internal class JsonReader(val text: String, allowance: Allowance) {
             return if (negative) value.negate() else value
         }
 
-        /** An exponent, as near as it matters. */
+        /** Returns an exponent, limited to ±[FAR]. */
         private fun exponent(text: String): Long {
             val far = if (text.startsWith("-")) -FAR else FAR
             return text.removePrefix("+").toLongOrNull()?.coerceIn(-FAR, FAR) ?: far
         }
 
-        /** No text is so long. */
+        /** Longer than any text. */
         private const val FAR = 1L shl 40
     }
 }
@@ -460,7 +463,7 @@ internal class JsonReader(val text: String, allowance: Allowance) {
 internal class IntRangeOf(val min: BigInteger, val max: BigInteger) {
     private val least = min.toLong()
 
-    /** That of `u64` is cut: what fits into 64 bits with a sign is not above it. */
+    /** The maximum, limited to 63 bits: for a `u64`, every positive `Long` is in range. */
     private val most = if (max.bitLength() < Long.SIZE_BITS) max.toLong() else Long.MAX_VALUE
 
     fun has(value: Long): Boolean = value in least..most

@@ -4,7 +4,7 @@ package fc.runtime
 internal class JsonWriter {
     private val out = StringBuilder(256)
 
-    /** Whether a comma is due before the next key or item. */
+    /** `true` if a comma must precede the next key or item. */
     private var isBehindValue = false
 
     val text: String get() = out.toString()
@@ -25,7 +25,7 @@ internal class JsonWriter {
         return this
     }
 
-    /** A value that is JSON already. */
+    /** Appends a value that is JSON text. */
     fun raw(text: String): JsonWriter {
         comma()
         out.append(text)

@@ -5,32 +5,32 @@ import kotlinx.coroutines.flow.MutableStateFlow
 import kotlinx.coroutines.flow.first
 import kotlinx.coroutines.flow.transformWhile
 
-/** Whether there is a connection at this moment, and why not. */
+/** The state of a connection: connected, connecting or closed, with the reason while it is down. */
 public sealed class ConnectionState {
     /**
-     * How many connections have been made, the present one included. A robot may have restarted in between: an app that sees
-     * another number than before asks for the robot's state again.
+     * Number of connections made so far, including the current one. If it changes, the robot may have restarted: query
+     * its state again.
      */
     public abstract val connects: Long
 
-    /** Why there is no connection; `null` while there is one. */
+    /** The reason why the connection is down; `null` while it is up. */
     public abstract val why: Loss?
 
-    /** There is a connection. */
+    /** The connection is up. */
     public class Connected internal constructor(override val connects: Long) : ConnectionState() {
         override val why: Loss? get() = null
     }
 
-    /** There is none, and one is being made: the first, or another one after a loss. What can wait for it does. */
+    /** The client is connecting, for the first time or after a loss. Operations that can wait do so. */
     public class Connecting internal constructor(override val connects: Long, override val why: Loss) : ConnectionState()
 
-    /** There will be none any more. */
+    /** The connection is closed for good. */
     public class Closed internal constructor(override val connects: Long, override val why: Loss) : ConnectionState()
 
-    /** Whether there is a connection. */
+    /** `true` while the connection is up. */
     public val isConnected: Boolean get() = this is Connected
 
-    /** Whether there will be none any more. */
+    /** `true` once the connection is closed for good. */
     public val isClosed: Boolean get() = this is Closed
 
     override fun equals(other: Any?): Boolean =
@@ -41,13 +41,13 @@ public sealed class ConnectionState {
     override fun toString(): String = "${javaClass.simpleName}($connects${why?.let { ", $it" } ?: ""})"
 }
 
-/** The state of a connection, and all who watch it. It is changed on one loop, and seen from anywhere. */
+/** The state of a connection, and its watchers. One loop changes it, and any thread reads it. */
 internal class Life(private val onTurn: (ConnectionState) -> Unit = {}) {
     private val told = MutableStateFlow<ConnectionState>(ConnectionState.Connecting(0, Loss.NOT_YET))
 
     val now: ConnectionState get() = told.value
 
-    /** The state, and each that it comes to; nothing after the last. Who asks late gets the latest. */
+    /** The states, from the current one to the last. A late collector gets only the latest. */
     val states: Flow<ConnectionState> = told.transformWhile { state ->
         emit(state)
         !state.isClosed
@@ -57,7 +57,7 @@ internal class Life(private val onTurn: (ConnectionState) -> Unit = {}) {
 
     fun lost(why: Loss) = turn(ConnectionState.Connecting(now.connects, why))
 
-    /** There will be none. The first reason counts. */
+    /** Closes the connection for good. The first reason counts. */
     fun close(why: Loss) = turn(ConnectionState.Closed(now.connects, why))
 
     private fun turn(state: ConnectionState) {
@@ -66,9 +66,9 @@ internal class Life(private val onTurn: (ConnectionState) -> Unit = {}) {
         told.value = state
     }
 
-    /** Waits until there will be no connection any more, and says why. */
+    /** Waits until the connection is closed for good, and returns the reason. */
     suspend fun closed(): Loss = checkNotNull(told.first { it.isClosed }.why)
 
-    /** Waits until there is a connection, or will be none any more. */
+    /** Waits until the connection is up or closed for good. */
     suspend fun settled(): ConnectionState = told.first { it.isConnected || it.isClosed }
 }

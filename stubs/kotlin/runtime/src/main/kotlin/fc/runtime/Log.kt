@@ -1,27 +1,30 @@
 package fc.runtime
 
-/** How much a line of the log matters. */
+/** The severity of a log line. */
 public enum class LogLevel {
-    /** What is to be expected now and then. */
+    /** An expected event. */
     INFO,
 
-    /** What somebody should look at. */
+    /** An event that needs attention. */
     WARN,
 
-    /** A fault of the program: an exception of a handler, of a listener, or of the runtime. */
+    /** A bug of the program: an exception of a handler, of a listener, or of the runtime. */
     ERROR,
 }
 
 /**
- * Takes the lines that tell what happens to connections: one for each thing, with address and reason, never with what messages
- * hold. It is called on the thread of all connections, so it must not block. Its exceptions are ignored.
+ * Takes the log lines of connections: one per event, with address and reason, but no contents of messages. It runs on
+ * the thread of all connections, so it must not block. Its exceptions are ignored.
  */
 public fun interface Log {
     /** Takes a line. */
     public fun line(level: LogLevel, line: String)
 }
 
-/** The lines of one side, on its loop alone: at most five a minute for each cause, the next has the number of those left out. */
+/**
+ * The log lines of one side, for its loop alone. Each cause writes at most five lines a minute. The next line has the
+ * number of skipped ones.
+ */
 internal class Lines(log: Log?, protocol: Protocol?, private val now: () -> Long) {
     private class Cause(var since: Long) {
         var said = 0
@@ -50,11 +53,11 @@ internal class Lines(log: Log?, protocol: Protocol?, private val now: () -> Long
         try {
             log.line(level, line() + held)
         } catch (_: Throwable) {
-            // A log that fails has nowhere to be logged, and harms no connection.
+            // Errors of the log cannot be logged. They harm no connection.
         }
     }
 
-    /** An exception that neither runtime nor protocol expects: [what] has failed. */
+    /** Logs an exception that neither the runtime nor the protocol expects: [what] has failed. */
     fun failed(what: String, error: Throwable, called: Any? = null, cause: String = what): Unit =
         say(LogLevel.ERROR, cause) { "$what: ${thrown.describe(error, called)}" }
 
@@ -62,7 +65,7 @@ internal class Lines(log: Log?, protocol: Protocol?, private val now: () -> Long
         const val MINUTE = 60_000L
         const val MOST = 5
 
-        /** Without a log, faults of the program must not pass unseen. */
+        /** Without a log, bugs of the program must still be visible. */
         val ERRORS_ONLY = Log { level, line -> if (level == LogLevel.ERROR) System.err.println(line) }
     }
 }

@@ -4,19 +4,19 @@ import java.io.IOException
 import kotlin.coroutines.resumeWithException
 import kotlinx.coroutines.CancellableContinuation
 
-/** One thread's turns, and its clock. Whatever belongs to a connection happens on its loop. */
+/** The event loop of one thread, with a clock. All work of a connection runs on its loop. */
 internal interface Loop {
-    /** The time in milliseconds, of no calendar. */
+    /** The time of a monotonic clock, in milliseconds. */
     val now: Long
 
-    /** Runs a task on the loop, after those before it. From any thread. */
+    /** Runs a task on the loop, after those before it. For any thread. */
     fun execute(task: () -> Unit)
 
-    /** Runs a task at a time. On the loop alone. */
+    /** Runs a task at a time. For the loop alone. */
     fun schedule(at: Long, task: () -> Unit): Timer
 }
 
-/** Runs a task on the loop for a coroutine that waits. It gets the exception that the task throws. */
+/** Runs a task on the loop for a suspended coroutine, which gets the exception of the task. */
 internal fun Loop.execute(waiting: CancellableContinuation<*>, task: () -> Unit) = execute {
     try {
         task()
@@ -25,57 +25,59 @@ internal fun Loop.execute(waiting: CancellableContinuation<*>, task: () -> Unit)
     }
 }
 
-/** A task that runs at a time, unless it is cancelled before. */
+/** A scheduled task, which can be cancelled before it runs. */
 internal interface Timer {
     fun cancel()
 }
 
-/** A connection's bytes. No method waits; all are called on the loop. */
+/** The byte stream of a connection. No method blocks, and all are called on the loop. */
 internal interface Link {
-    /** Begins: [ready] is called on the loop when what was asked for by [want] can be done. */
+    /** Starts the link. [ready] is called on the loop when an operation requested by [want] is possible. */
     fun open(ready: () -> Unit)
 
-    /** Reads what is there: how many bytes; 0 if there are none yet, -1 if there will be none. */
+    /** Reads available bytes. Returns their number; 0 if there are none yet, -1 at the end. */
     @Throws(IOException::class)
     fun read(into: ByteArray): Int
 
-    /** Writes what can be taken now, and gives how many bytes that was. */
+    /** Writes as many bytes as possible now, and returns their number. */
     @Throws(IOException::class)
     fun write(bytes: ByteArray, from: Int, length: Int): Int
 
-    /** What to call back for. */
+    /** Sets the operations to call back for. */
     fun want(read: Boolean, write: Boolean)
 
-    /** Tells the peer that nothing more comes. */
+    /** Closes the outgoing half. */
     @Throws(IOException::class)
     fun endOutput()
 
-    /** Ends both directions. */
+    /** Closes both halves. */
     fun close()
 }
 
-/** Makes a connection, each time it is asked to; calls back on the loop. */
+/** Makes a connection on request, and calls back on the loop. */
 internal fun interface Dial {
-    /** Begins to connect. The result cancels it. */
+    /** Starts to connect. Cancel the result to stop. */
     fun dial(done: (Link?, Exception?) -> Unit): Timer
 }
 
-/** What has come to its end on a connection. */
+/** The end of a connection. */
 internal sealed interface End {
-    /** Nothing can be sent either. */
+    /** Neither reading nor writing is possible. */
     class Broken(
         val cause: IOException,
-        /** The runtime has failed, and not the network. */
+        /** `true` for a failure of the runtime rather than of the network. */
         val isOwn: Boolean = false,
     ) : End
 
-    /** The peer sends nothing more, or what it sends cannot be told into frames. */
+    /** The peer has closed its half, or its bytes are not a valid sequence of frames. */
     class Deaf(val error: FrameError?) : End
 }
 
 /**
- * One connection: reads frames, writes frames, and knows when to go on. What it does all belongs to one turn, which is
- * taken when something can be read or written, when something is due, or when somebody [wakes][wake] it. On the loop alone.
+ * One connection. It reads and writes frames and schedules its work.
+ *
+ * All work belongs to a turn. A turn runs when something can be read or written, when a deadline has come, or after
+ * [wake]. For the loop alone.
  */
 internal abstract class Conversation(protected val loop: Loop, private val link: Link, protected val decoder: Decoder) {
     private val out = ArrayDeque<ByteArray>()
@@ -85,7 +87,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
     private var timer: Timer? = null
     private var armed = Long.MAX_VALUE
 
-    /** Nothing more is dealt with; it may still be saying goodbye. */
+    /** `true` once it handles nothing more. It may still be closing. */
     var isOver = false
         private set
 
@@ -98,7 +100,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         wake()
     }
 
-    /** Takes a turn soon. */
+    /** Runs a turn soon. */
     fun wake() {
         if (isWoken) return
         isWoken = true
@@ -112,7 +114,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         }
     }
 
-    /** A turn has failed: the connection ends, and harms no other. */
+    /** Ends the connection after a failed turn, without harm to others. */
     private fun end(failure: Throwable) {
         failed(failure)
         try {
@@ -122,11 +124,11 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         }
     }
 
-    /** Sends a frame with the next turn. A long body is not copied. */
+    /** Sends a frame in the next turn. A long body is not copied. */
     fun send(body: Prepared, id: FrameId): Unit =
         if (body.length <= GATHERED) send(body.frame(id)) else send(body.header(id), body.data)
 
-    /** Sends a frame with the next turn, in one piece or two. */
+    /** Sends a frame in the next turn, in one piece or two. */
     fun send(first: ByteArray, second: ByteArray? = null) {
         if (isClosed) return
         val length = first.size + (second?.size ?: 0)
@@ -139,43 +141,43 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         wake()
     }
 
-    /** Whether more is read at this moment. */
+    /** Returns `true` while it reads. */
     protected abstract fun reads(): Boolean
 
-    /** A frame has come. */
+    /** Handles a received frame. */
     protected abstract fun arrived(frame: Frame, now: Long)
 
-    /** One has come that could not be read, and was skipped. */
+    /** Handles the error of a skipped frame. */
     protected abstract fun skipped(error: FrameError, now: Long)
 
-    /** Bytes have come, of which [isFirst] are the first of a frame. */
+    /** Notes received bytes. With [isFirst], they start a frame. */
     protected abstract fun came(bytes: Int, isFirst: Boolean, now: Long)
 
-    /** Something ends. */
+    /** Handles an end. */
     protected abstract fun ended(end: End)
 
-    /** Does all that is due, and says when it has to be asked again at the latest. */
+    /** Does all due work, and returns the time of the next deadline. */
     protected abstract fun tend(now: Long): Long
 
-    /** Something is to be sent, and there was nothing before. */
+    /** Notes that there is something to send after there was nothing. */
     protected abstract fun begins(now: Long)
 
-    /** The peer has taken so many bytes. */
+    /** Notes bytes that the peer has taken. */
     protected abstract fun wrote(bytes: Int, now: Long)
 
-    /** So many bytes have been handed over to be sent. */
+    /** Notes bytes that were handed over to be sent. */
     protected open fun sent(bytes: Int) {}
 
-    /** A turn has failed with an exception. */
+    /** Handles an exception of a turn. */
     protected abstract fun failed(failure: Throwable)
 
-    /** Makes room for so many more bytes. `false` if there is none: the conversation is woken when there may be. */
+    /** Makes room for more bytes. Returns `false` if there is none; the conversation is woken when there may be. */
     protected open fun room(bytes: Long): Boolean = true
 
-    /** The bytes that it holds have changed. */
+    /** Notes that the number of held bytes has changed. */
     protected open fun settle() {}
 
-    /** Reading waits for memory. */
+    /** `true` while reading waits for memory. */
     protected var isStarved = false
         private set
 
@@ -199,7 +201,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         arm(due)
     }
 
-    /** Reads and deals with all there is, or as much as one turn may. What is left of that. */
+    /** Reads and handles all available bytes, up to the budget of one turn. Returns the rest of the budget. */
     private fun receive(now: Long): Int {
         var budget = TURN
         isStarved = false
@@ -248,7 +250,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         return budget
     }
 
-    /** Writes what can be taken; whether that was all and there was something. */
+    /** Writes as many bytes as possible. Returns `true` if this emptied the queue. */
     private fun write(now: Long): Boolean {
         val before = unsent
         try {
@@ -271,7 +273,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         return before > 0 && unsent == 0L
     }
 
-    /** Puts short frames together, which go out with one write. */
+    /** Joins short frames, so that they are sent with one write. */
     private fun gather() {
         var count = 0
         var length = 0
@@ -298,10 +300,10 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         timer = if (due == Long.MAX_VALUE) null else loop.schedule(due) { armed = Long.MAX_VALUE; wake() }
     }
 
-    /** Gives back memory that nothing is in. */
+    /** Frees empty buffers. */
     fun tidy(): Unit = decoder.tidy()
 
-    /** Ends at once. */
+    /** Closes the connection at once. */
     fun cut() {
         isOver = true
         timer?.cancel()
@@ -309,7 +311,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         closed()
     }
 
-    /** Sends what is left, says goodbye, and waits a moment for the peer's own. */
+    /** Sends the rest, closes its half, and waits a moment for the end of the peer. */
     fun part() {
         if (isOver) return
         isOver = true
@@ -329,7 +331,7 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
                 saidGoodbye = true
                 link.endOutput()
             }
-            // A socket that is closed while something is unread is reset, and what the peer has not read is lost to it.
+            // Closing a socket with unread bytes resets it, and the peer loses bytes that it has not read yet.
             while (!heardGoodbye) {
                 val read = link.read(scratch)
                 if (read == 0) break
@@ -353,21 +355,21 @@ internal abstract class Conversation(protected val loop: Loop, private val link:
         gone()
     }
 
-    /** The connection is no more. */
+    /** Called after the connection is closed. */
     protected open fun gone() {}
 
     private companion object {
-        /** What may be read and answered in one turn, in bytes. */
+        /** Most bytes to read and respond to in one turn. */
         const val TURN = 256 * 1024
 
-        /** What the work on a frame counts beside its bytes. */
+        /** Cost of a frame in addition to its bytes. */
         const val FRAME = 2 * 1024
         const val READ = 16 * 1024
 
-        /** Up to how many bytes frames go out with one write: copying more would cost more than it saves. */
+        /** Most bytes of frames that are joined into one write. Copying more would cost more than it saves. */
         const val GATHERED = 64 * 1024
 
-        /** How long a closing connection tries to send what is left, and waits for the peer's goodbye. */
+        /** Time of a closing connection to send the rest and wait for the end of the peer, in milliseconds. */
         const val CLOSING = 1000L
     }
 }

@@ -1,33 +1,33 @@
 package fc.runtime
 
-/** A connection of a robot, as its [MemoryBudget] sees it. */
+/** A connection of a robot, from the view of its [MemoryBudget]. */
 internal interface MemoryHolder {
     /** Bytes that the connection holds. */
     val held: Long
 
-    /** Bytes that closing the connection gives back: [held], and its stream frames that wait for the robot. */
+    /** Bytes that closing the connection frees: [held], and its stream frames that wait for the robot. */
     val weight: Long get() = held
 
     /** The part of [held] that the budget has counted. */
     var counted: Long
 
-    /** Gives back buffers that nothing is in. */
+    /** Frees empty buffers. */
     fun tidy()
 
-    /** Looks again: there may be room now. */
+    /** Tries again: there may be room now. */
     fun wake()
 }
 
 /**
- * The bytes that apps make a robot hold, at both ports together. On the loop alone, except [total].
+ * The bytes that apps make a robot hold, at both ports together. For the loop alone, except [total].
  *
- * A connection asks for room before it grows. If there is none, the connection that holds most is closed. Closing a connection
- * does not give back its requests in handlers. They may take half of all, and further requests wait.
+ * A connection asks for room before it grows. Without room, the connection that holds most is closed. Closing a
+ * connection does not free its requests in handlers. They may take half of the limit; further requests wait.
  */
 internal class MemoryBudget(
     private val limit: Long,
     private val holders: () -> List<MemoryHolder>,
-    /** Bytes of stream frames that wait for the robot, of all connections. */
+    /** Bytes of stream frames of all connections that wait for the robot. */
     private val inbox: () -> Long,
     private val evict: (MemoryHolder) -> Unit,
 ) {
@@ -38,10 +38,10 @@ internal class MemoryBudget(
     private var lent = 0L
     private val waiting = LinkedHashSet<MemoryHolder>()
 
-    /** Bytes held at this moment. From any thread. */
+    /** Bytes held at this moment. For any thread. */
     val total: Long get() = held + lent + inbox()
 
-    /** Counts the bytes that a connection holds now. If they are too many, connections go. */
+    /** Counts the bytes that a connection holds now. Above the limit, connections are closed. */
     fun settle(holder: MemoryHolder) {
         val now = holder.held
         val before = holder.counted
@@ -51,7 +51,7 @@ internal class MemoryBudget(
         if (now < before) gaveBack() else if (!hasRoom(0)) makeRoom(0, null)
     }
 
-    /** Forgets a connection that has ended. */
+    /** Removes an ended connection. */
     fun leave(holder: MemoryHolder) {
         held -= holder.counted
         holder.counted = 0
@@ -59,22 +59,25 @@ internal class MemoryBudget(
         gaveBack()
     }
 
-    /** Makes room for so many bytes. `false` if there is none: [holder] is woken when bytes are given back. */
+    /** Makes room for more bytes. Returns `false` if there is none; [holder] is woken when bytes are freed. */
     fun room(holder: MemoryHolder, bytes: Long): Boolean {
         if (hasRoom(bytes)) return true
         makeRoom(bytes, holder)
         return hasRoom(bytes).also { if (!it) await(holder) }
     }
 
-    /** Returns `true` if so many bytes fit without closing a connection. */
+    /** Returns `true` if [bytes] fit without closing a connection. */
     fun hasRoom(bytes: Long): Boolean = total + bytes <= limit
 
-    /** Wakes a connection when bytes are given back. */
+    /** Wakes a connection when bytes are freed. */
     fun await(holder: MemoryHolder) {
         waiting.add(holder)
     }
 
-    /** Lends so many bytes to a handler. `false` if handlers have too many: [holder] is woken when one gives its own back. */
+    /**
+     * Lends bytes to a handler. Returns `false` if handlers have too many; [holder] is woken when a handler returns
+     * some.
+     */
     fun lend(holder: MemoryHolder, bytes: Long): Boolean {
         if (bytes > SMALL && lent > 0 && lent + bytes > limit / 2) {
             await(holder)
@@ -84,7 +87,7 @@ internal class MemoryBudget(
         return true
     }
 
-    /** Takes back the bytes of a handler that has ended. */
+    /** Takes back the bytes of an ended handler. */
     fun giveBack(bytes: Long) {
         lent -= bytes
         gaveBack()
@@ -98,7 +101,7 @@ internal class MemoryBudget(
         woken.forEach { it.wake() }
     }
 
-    /** Closes the connections that hold most until so many bytes fit; none if that cannot suffice for the one that [asks]. */
+    /** Closes the connections that hold most until [bytes] fit. Closes none if that cannot suffice for [asks]. */
     private fun makeRoom(bytes: Long, asks: MemoryHolder?) {
         for (holder in holders()) {
             holder.tidy()
@@ -110,16 +113,16 @@ internal class MemoryBudget(
         while (!hasRoom(bytes)) {
             val greatest = holders().maxByOrNull { it.weight }?.takeIf { it.weight >= NEEDED } ?: return
             evict(greatest)
-            // It does not need the bytes any more.
+            // The closed connection was the one that needs the bytes.
             if (greatest === asks) return
         }
     }
 
     private companion object {
-        /** A connection that holds fewer bytes is not closed: any connection needs as many. */
+        /** A connection that holds fewer bytes is not closed: any connection needs this much. */
         const val NEEDED = 128L * 1024
 
-        /** A request of so many bytes or fewer never waits for handlers: a robot that is busy still answers. */
+        /** A request up to this length never waits for handlers, so that a busy robot still responds. */
         const val SMALL = 8L * 1024
     }
 }

@@ -1,39 +1,39 @@
 package fc.runtime
 
-/** What a message holds: the values of its fields, and the keys that the spec does not have. */
+/** The content of a message: the values of its fields, and the unknown keys. */
 public class Content internal constructor(internal val values: Array<Any?>, internal val extra: Extra)
 
-/** A JSON object with known keys. It never changes; a builder makes another one. */
+/** A JSON object with known keys. It is immutable; a builder creates a changed copy. */
 public abstract class Message protected constructor(content: Content) {
     internal val values: Array<Any?> = content.values
 
-    /** The keys that the spec does not have; kept unchanged and sent again. */
+    /** The unknown keys, kept unchanged and sent again. */
     public val extra: Extra = content.extra
 
     /** The type of this message. */
     public abstract val messageType: MessageType<*>
 
-    /** The value of a field. */
+    /** Returns the value of a field. */
     @Suppress("UNCHECKED_CAST")
     protected operator fun <T : Any> get(field: Field<T>): T = values[field.index] as T
 
-    /** The value of a field that may be missing. */
+    /** Returns the value of an optional field, or `null`. */
     @Suppress("UNCHECKED_CAST")
     protected operator fun <T : Any> get(field: OptionalField<T>): T? = values[field.index] as T?
 
-    /** The message as JSON, its own keys alone. */
+    /** Returns the message as JSON, without an envelope. */
     public fun toJson(): Json = Json.trusted(JsonWriter().also { messageType.writeObject(it, this) }.text)
 
     /**
-     * Whether all that the spec demands of the message holds, here and in everything inside: what is sent is checked so.
-     * What is received has been.
+     * Checks all constraints of the message and of everything inside. Messages are checked when they are sent, and
+     * received ones have been checked.
      *
-     * @throws BodyError the first demand that does not hold
+     * @throws BodyError the first broken constraint
      */
     @Throws(BodyError::class)
     public fun check(): Unit = messageType.checkAll(this)
 
-    /** The first field that is there although its condition does not hold, or missing although it does. */
+    /** Returns the first field that is present although its condition does not hold, or missing although it does. */
     public fun conditionError(): ConditionError? = messageType.fields.asSequence().mapNotNull { it.contradiction(this) }.firstOrNull()
 
     override fun equals(other: Any?): Boolean =
@@ -76,7 +76,7 @@ public abstract class AnyField internal constructor(
         return ConditionError(key, if (isThere) ConditionErrorKind.UNASKED else ConditionErrorKind.MISSING, condition)
     }
 
-    /** Whether a value travels as one of these. */
+    /** Returns `true` if the wire value is one of [wanted]. */
     internal fun isAmong(message: Message, wanted: List<Any>): Boolean {
         val value = message.values[index] ?: return false
         @Suppress("UNCHECKED_CAST")
@@ -84,38 +84,43 @@ public abstract class AnyField internal constructor(
     }
 }
 
-/** A key that every such message has. */
+/** A required key of a message. */
 public class Field<T : Any> internal constructor(key: String, index: Int, override val codec: Codec<T>) :
     AnyField(key, index, false) {
-    /** Another key under which it is accepted. */
+    /** Also accepts another key. */
     public fun also(key: String): Field<T> = apply { aliases += key }
 
-    /** Its value is not shown in string forms. */
+    /** Hides the value in string forms. */
     public fun sensitive(): Field<T> = apply { isSensitive = true }
 
-    /** What the runtime uses it for. */
+    /** Sets the role in an envelope. */
     public fun role(role: EnvelopeRole): Field<T> = apply { this.role = role }
 }
 
-/** A key that may be missing, or `null`. */
+/** An optional key of a message, which may be missing or `null`. */
 public class OptionalField<T : Any> internal constructor(key: String, index: Int, override val codec: Codec<T>) :
     AnyField(key, index, true) {
-    /** Another key under which it is accepted. */
+    /** Also accepts another key. */
     public fun also(key: String): OptionalField<T> = apply { aliases += key }
 
-    /** Its value is not shown in string forms. */
+    /** Hides the value in string forms. */
     public fun sensitive(): OptionalField<T> = apply { isSensitive = true }
 
-    /** Quirk: `{}`, `[]` and `""` are taken as missing. */
+    /** Quirk: reads `{}`, `[]` and `""` as a missing value. */
     public fun emptyIsAbsent(): OptionalField<T> = apply { isEmptyAbsent = true }
 
-    /** What the runtime uses it for. */
+    /** Sets the role in an envelope. */
     public fun role(role: EnvelopeRole): OptionalField<T> = apply { this.role = role }
 
-    /** It is there exactly where [field] travels as one of these. Of several, all have to hold. */
+    /**
+     * Makes the field present exactly if the wire value of [field] is one of [values]. Several conditions must all
+     * hold.
+     */
     public fun whenIs(field: AnyField, vararg values: Any): OptionalField<T> = conditional(true, field, values)
 
-    /** It is there everywhere but where [field] travels as one of these. Of several, all have to hold. */
+    /**
+     * Makes the field absent exactly if the wire value of [field] is one of [values]. Several conditions must all hold.
+     */
     public fun unlessIs(field: AnyField, vararg values: Any): OptionalField<T> = conditional(false, field, values)
 
     private fun conditional(isWhen: Boolean, field: AnyField, values: Array<out Any>): OptionalField<T> = apply {
@@ -124,51 +129,51 @@ public class OptionalField<T : Any> internal constructor(key: String, index: Int
     }
 }
 
-/** What the runtime uses a key of an envelope for. */
+/** The role of a key of an envelope. */
 public enum class EnvelopeRole {
-    /** When the message was made. */
+    /** Creation time of the message. */
     TIME,
 
     /** The result code. */
     RESULT_CODE,
 
-    /** The text beside the result code. */
+    /** The text of the result. */
     RESULT_TEXT,
 }
 
 /**
- * The type of a message: its fields, named once. Its properties are made with [required] and [optional], in the order in
- * which they are written.
+ * The type of a message with its fields. Its properties are created with [required] and [optional], in the order of
+ * writing.
  */
 public abstract class MessageType<M : Message> protected constructor(
-    /** Its name. */
+    /** The name in the spec. */
     public val name: String,
-    /** The spec's example in wire form, own keys only. */
+    /** The example in the spec in wire form, without an envelope. */
     private val exampleJson: String = "{}",
 ) : Codec<M>() {
     private val all = ArrayList<AnyField>()
     private val byKey = HashMap<String, AnyField>()
 
-    /** Its fields. */
+    /** The fields. */
     public val fields: List<AnyField> get() = all
 
     override val itemBytes: Int get() = 40 + 8 * all.size
 
-    /** The message with this content. */
+    /** Creates a message with this content. */
     protected abstract fun create(content: Content): M
 
-    /** A key that every such message has. */
+    /** Adds a required key. */
     protected fun <T : Any> required(key: String, codec: Codec<T>): Field<T> = Field(key, all.size, codec).also { all.add(it) }
 
-    /** A key that may be missing. */
+    /** Adds an optional key. */
     protected fun <T : Any> optional(key: String, codec: Codec<T>): OptionalField<T> =
         OptionalField(key, all.size, codec).also { all.add(it) }
 
-    /** The spec's example. */
+    /** Returns the example in the spec. */
     public fun example(): M = Bodies.decode(this, exampleJson.toByteArray(), Allowance.ANY)
 
     /**
-     * Reads a message from JSON, its own keys alone.
+     * Reads a message from JSON without an envelope.
      *
      * @throws BodyError if it is not such a message
      */
@@ -177,13 +182,13 @@ public abstract class MessageType<M : Message> protected constructor(
 
     internal fun make(values: Array<Any?>, extra: Extra): M = create(Content(values, extra))
 
-    /** The field with this key, or with this alias. */
+    /** Returns the field with this key or alias. */
     internal fun field(key: String): AnyField? {
         if (byKey.isEmpty() && all.isNotEmpty()) index()
         return byKey[key]
     }
 
-    // Not when the type is made: aliases come later than their field.
+    // Runs on first use: a type adds the aliases after the field.
     private fun index() = synchronized(all) {
         val found = HashMap<String, AnyField>()
         for (field in all) for (key in field.aliases + field.key) found[key] = field
@@ -227,7 +232,7 @@ public abstract class MessageType<M : Message> protected constructor(
         if (isDeep) checkAll(value)
     }
 
-    /** Checks something that is to be sent. Java can pass `null` and messages of other types. */
+    /** Checks a message to be sent. Java can pass `null` and messages of other types. */
     internal fun demand(message: Any?): M {
         if (message !is Message || message.messageType !== this) {
             val found = (message as? Message)?.messageType?.name ?: message?.javaClass?.name
@@ -259,7 +264,7 @@ internal class Draft<M : Message>(private val type: MessageType<M>) {
     private val come = BooleanArray(type.fields.size)
     private var kept: JsonWriter? = null
 
-    /** Reads the value of a key if the message has it. */
+    /** Reads the value of a known key. Returns `false` for an unknown one. */
     fun take(reader: JsonReader, key: String): Boolean {
         val field = type.field(key) ?: return false
         if (come[field.index]) {
@@ -277,14 +282,14 @@ internal class Draft<M : Message>(private val type: MessageType<M>) {
         return true
     }
 
-    /** Keeps the value of a key that the message does not have. */
+    /** Keeps the value of an unknown key. */
     fun keep(reader: JsonReader, key: String) {
         reader.count(1)
         if (type === Empty) return reader.skipValue()
         (kept ?: JsonWriter().also { kept = it }).key(key).raw(reader.valueText())
     }
 
-    /** The message, if all that it demands is there. */
+    /** Returns the message if it is complete and satisfies its constraints. */
     fun finish(reader: JsonReader, start: Int): M {
         val missing = type.fields.firstOrNull { !it.isOptional && values[it.index] == null }
         if (missing != null) {
@@ -311,14 +316,14 @@ public abstract class MessageBuilder<M : Message, B : MessageBuilder<M, B>> prot
     /** Sets a field. */
     protected fun <T : Any> put(field: Field<T>, value: T): B = self { values[field.index] = field.codec.kept(value) }
 
-    /** Sets a field that may be missing; `null` takes it away. */
+    /** Sets an optional field; `null` removes it. */
     protected fun <T : Any> put(field: OptionalField<T>, value: T?): B =
         self { values[field.index] = value?.let { field.codec.kept(it) } }
 
-    /** Adds a key that the spec does not have. */
+    /** Adds an unknown key. */
     public fun extra(key: String, value: Json): B = self { extra = extra.plus(key, value) }
 
-    /** Sets the keys that the spec does not have. */
+    /** Sets the unknown keys. */
     public fun extra(extra: Extra): B = self { this.extra = extra }
 
     @Suppress("UNCHECKED_CAST")
@@ -328,9 +333,9 @@ public abstract class MessageBuilder<M : Message, B : MessageBuilder<M, B>> prot
     }
 
     /**
-     * The message.
+     * Returns the message.
      *
-     * @throws IllegalStateException if a required field has not been set
+     * @throws IllegalStateException if a required field is not set
      */
     public fun build(): M {
         val missing = type.fields.firstOrNull { !it.isOptional && values[it.index] == null }
@@ -339,21 +344,21 @@ public abstract class MessageBuilder<M : Message, B : MessageBuilder<M, B>> prot
     }
 
     /**
-     * The message, whose fields are there exactly where their conditions hold.
+     * Returns the message and checks its conditions.
      *
      * @throws ConditionError the first contradiction
-     * @throws IllegalStateException if a required field has not been set
+     * @throws IllegalStateException if a required field is not set
      */
     @Throws(ConditionError::class)
     public fun checked(): M = build().also { message -> message.conditionError()?.let { throw it } }
 }
 
-/** A message without keys of its own; unknown ones are skipped. */
+/** A message without known keys; unknown ones are skipped. */
 public class Empty private constructor(content: Content) : Message(content) {
     override val messageType: MessageType<Empty> get() = Empty
 
     public companion object : MessageType<Empty>("Empty") {
-        /** The one value. */
+        /** The only instance. */
         @JvmField
         public val INSTANCE: Empty = Empty(Content(emptyArray(), Extra.NONE))
 

@@ -2,9 +2,9 @@ package fc.runtime
 
 import java.net.InetAddress
 
-/** A network: all addresses that begin with the same bits. */
+/** A network: all addresses with the same first bits. */
 internal class Network private constructor(private val first: ByteArray, private val prefix: Int) {
-    /** How many bits its addresses share, of 128: of two networks that hold an address, the one with more is the smaller. */
+    /** Length of the prefix, of 128 bits. The longer prefix is the smaller network. */
     val size: Int get() = prefix + if (first.size == IPV4) MAPPED else 0
 
     fun has(address: InetAddress): Boolean {
@@ -15,21 +15,21 @@ internal class Network private constructor(private val first: ByteArray, private
     companion object {
         private const val IPV4 = 4
 
-        /** Bits of an address of IPv6 in front of one of IPv4 in it. */
+        /** Bits in front of an IPv4 address that is mapped to IPv6. */
         private const val MAPPED = 96
         private val LITERAL = Regex("[0-9]+\\.[0-9]+\\.[0-9]+\\.[0-9]+|[0-9a-fA-F:.]*:[0-9a-fA-F:.]*")
 
         /**
-         * `10.0.0.0/24`, `fd00::/8`, or one address.
+         * Parses `10.0.0.0/24`, `fd00::/8`, or one address.
          *
-         * @throws IllegalArgumentException if it is not a network, or has bits behind its prefix
+         * @throws IllegalArgumentException if it is not a network, or has bits after its prefix
          */
         fun of(text: String): Network {
             val (address, length) = (text.split('/', limit = 2) + null)
-            // No name is looked up for it.
+            // Only literals are accepted, so that no name is looked up.
             require(address != null && LITERAL.matches(address)) { "`$text` has no address of IPv4 or IPv6" }
             val first = InetAddress.getByName(address).address
-            // What Java makes of an address of IPv4 inside one of IPv6.
+            // Java converts an IPv4 address mapped to IPv6 into IPv4.
             val isMapped = first.size == IPV4 && ':' in address
             val most = if (isMapped) MAPPED + 8 * IPV4 else 8 * first.size
             val written = if (length == null) most else length.toIntOrNull()?.takeIf { length.all { digit -> digit in '0'..'9' } }
@@ -47,11 +47,11 @@ internal class Network private constructor(private val first: ByteArray, private
     }
 }
 
-/** Who may do what: nothing is said of anybody, or of all. */
+/** The allowed effects of each network. Without a network, everything is allowed. */
 internal class Allowed private constructor(private val networks: List<Pair<Network, Set<Effect>>>) {
     fun plus(network: Network, effects: Set<Effect>): Allowed = Allowed(networks + (network to effects))
 
-    /** What may be called from an address; `null` if nobody may connect from there. */
+    /** Returns the effects that an address may call, or `null` if it may not connect. */
     fun effects(address: InetAddress?): Set<Effect>? {
         if (networks.isEmpty() || address == null) return ALL
         return networks.filter { it.first.has(address) }.maxByOrNull { it.first.size }?.second

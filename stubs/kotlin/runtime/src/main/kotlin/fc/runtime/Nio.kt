@@ -16,7 +16,7 @@ import java.util.concurrent.ConcurrentLinkedQueue
 import java.util.concurrent.atomic.AtomicBoolean
 import kotlin.concurrent.thread
 
-/** A loop over sockets, with a thread of its own, which keeps no program alive. */
+/** A loop over sockets with its own daemon thread. */
 internal class NioLoop(name: String, log: Log? = null) : Loop {
     private val lines = Lines(log, null) { now }
 
@@ -32,13 +32,13 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
 
     override val now: Long get() = System.nanoTime() / 1_000_000
 
-    /** The thread has ended. */
+    /** `true` once the thread has ended. */
     @Volatile
     private var isOver = false
 
     override fun execute(task: () -> Unit) {
         tasks.add(task)
-        // Where nothing is left but to say so, whoever asks is told on his own thread.
+        // After the end, the task only reports the end, on the thread of the caller.
         if (isOver) return drain()
         if (Thread.currentThread() !== worker && !isAwake.getAndSet(true)) selector.wakeup()
     }
@@ -55,7 +55,7 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
         }
     }
 
-    /** Ends the thread once its tasks are done. */
+    /** Ends the thread after its tasks. */
     fun end() {
         isEnding = true
         execute {}
@@ -86,7 +86,7 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
         try {
             if (tasks.isNotEmpty() || wait == 0L) selector.selectNow() else selector.select(wait)
         } catch (failure: IOException) {
-            // It would fail again at once.
+            // Without a pause, it would fail again at once.
             Thread.sleep(PAUSE)
             throw failure
         } finally {
@@ -100,12 +100,12 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
         keys.clear()
     }
 
-    /** Runs a task. All connections share the thread, and it does not end with an exception. */
+    /** Runs a task. All connections share the thread, so an exception must not end it. */
     private fun guarded(task: () -> Unit) {
         try {
             task()
         } catch (_: CancelledKeyException) {
-            // The connection ended in the same turn.
+            // The connection has ended in the same turn.
         } catch (failure: Throwable) {
             lines.failed("a task of the runtime failed", failure)
         }
@@ -117,13 +117,13 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
         try {
             thread(isDaemon = true, name = "fc-lookup") { look(host, port, attempt) }
         } catch (failure: Throwable) {
-            // No more threads: the attempt fails like any other, after its timer is there.
+            // If no thread can start, the attempt fails like any other, after its timer exists.
             execute { attempt.fail(failure) }
         }
         return attempt
     }
 
-    /** On Android, an app without the permission for networks gets a `SecurityException`. */
+    /** On Android, an app without the network permission gets a `SecurityException`. */
     private fun look(host: String, port: Int, attempt: Attempt) = try {
         val address = InetSocketAddress(InetAddress.getByName(host), port)
         execute { attempt.connect(address) }
@@ -179,7 +179,7 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
         }
     }
 
-    /** Listens at a port: [accepted] is called for each connection. */
+    /** Listens at a port. [accepted] is called for each connection. */
     fun listen(address: InetSocketAddress, accepted: (SocketChannel) -> Unit): ServerSocketChannel {
         if (address.isUnresolved) throw UnknownHostException("no such address: ${address.hostString}")
         val listener = ServerSocketChannel.open()
@@ -204,9 +204,9 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
             try {
                 while (true) accept(listener.accept() ?: return)
             } catch (_: ClosedChannelException) {
-                // It listens no more.
+                // The listener is closed.
             } catch (_: IOException) {
-                // As when there are no descriptors left: it would fail again at once.
+                // For example, no file descriptors are left: it would fail again at once.
                 val key = listener.keyFor(selector)
                 key?.interestOps(0)
                 schedule(now + PAUSE) { if (key?.isValid == true) key.interestOps(SelectionKey.OP_ACCEPT) }
@@ -217,7 +217,7 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
             try {
                 accepted(channel)
             } catch (_: IOException) {
-                // It has gone already.
+                // The peer has disconnected already.
                 channel.close()
             } catch (failure: Throwable) {
                 channel.close()
@@ -237,7 +237,7 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
         private var key: SelectionKey? = null
 
         override fun open(ready: () -> Unit) {
-            // Only what was asked for calls back once; a turn asks anew.
+            // An operation calls back once. Each turn requests it again.
             key = channel.register(selector, 0, {
                 key?.takeIf { it.isValid }?.interestOps(0)
                 ready()
@@ -262,7 +262,7 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
             try {
                 channel.close()
             } catch (_: IOException) {
-                // It is gone in any case.
+                // The socket is closed in any case.
             }
         }
     }
@@ -271,10 +271,10 @@ internal class NioLoop(name: String, log: Log? = null) : Loop {
         const val IDLE = 60_000L
         const val BACKLOG = 128
 
-        /** How long nothing is accepted after that has failed, in milliseconds. */
+        /** Pause of accepting after a failure, in milliseconds. */
         const val PAUSE = 100L
 
-        /** Written at once, in bytes: the system copies it while nobody else has his turn. */
+        /** Most bytes per write, because the system copies them while all other connections wait. */
         const val PIECE = 256 * 1024
     }
 }

@@ -1,101 +1,101 @@
 package fc.runtime
 
-/** What a command does to the robot. */
+/** The effect of a command on the robot. */
 public enum class Effect {
-    /** Only asks. */
+    /** Only queries. */
     READ,
 
-    /** Changes what the robot knows or how it behaves. */
+    /** Changes the data or configuration of the robot. */
     CONFIG,
 
-    /** Sets something in motion. */
+    /** Moves the robot. */
     MOTION,
 
-    /** Nobody knows: never repeated by itself, like what sets something in motion. */
+    /** Unknown. Treated like [MOTION] and never repeated automatically. */
     UNKNOWN,
 }
 
-/** A command: a request with a code, tied to its response. The generated part has one value for each. */
+/** A command: a request with a code and its response. The generated code has one value per command. */
 public class Command<Q : Message, A : Message>(
     /** Name in the spec. */
     public val name: String,
     /** Command code. */
     public val code: Int,
-    /** What it does to the robot. */
+    /** The effect on the robot. */
     public val effect: Effect,
-    /** Its request. */
+    /** The type of the request. */
     public val request: MessageType<Q>,
-    /** Its response. */
+    /** The type of the response. */
     public val response: MessageType<A>,
 ) {
     internal var declared: List<DeclaredError> = emptyList()
 
-    /** What people call it, in Chinese. */
+    /** Chinese title. */
     public var titleZh: String = name
         private set
 
-    /** What people call it, in English. */
+    /** English title. */
     public var titleEn: String = name
         private set
 
-    /** With what people call it. */
+    /** Sets the titles. */
     public fun titled(zh: String, en: String): Command<Q, A> = apply {
         titleZh = zh
         titleEn = en
     }
 
-    /** With the results besides success that it declares. */
+    /** Sets the declared results other than success. */
     public fun declares(vararg errors: DeclaredError): Command<Q, A> = apply { declared = errors.toList() }
 
     private var states: List<Any> = emptyList()
 
-    /** Accepted only in these states, of whichever enums. */
+    /** Limits the command to these states, which may belong to several enums. */
     public fun accepted(vararg states: Any): Command<Q, A> = apply { this.states = states.toList() }
 
     /**
-     * Whether it is accepted in this state, as far as it depends on states of this enum. One that the spec does not know is none
-     * of them.
+     * Returns `true` if the command is accepted in this state, as far as it depends on states of this enum. A state
+     * that the spec does not define is not accepted then.
      */
     public fun isAcceptedIn(state: Any): Boolean = states.none { it.javaClass == state.javaClass } || state in states
 
     override fun toString(): String = name
 }
 
-/** A result besides success that a command declares, by name. */
+/** A named result other than success that a command declares. */
 public open class DeclaredError(
-    /** Its name in the spec. */
+    /** Name in the spec. */
     public val name: String,
-    /** Its result code. */
+    /** Result code. */
     public val code: Long,
-    /** The text sent beside it. */
+    /** The text of the result. */
     public val text: String,
 ) {
-    /** The refusal of a handler. */
+    /** Returns the refusal for a handler to throw. */
     public fun refusal(): Refusal = Refusal(code, text)
 
     override fun toString(): String = name
 }
 
-/** A report: a message that is pushed and acknowledged. The generated part has one value for each. */
+/** A report: a message that is pushed and acknowledged. The generated code has one value per report. */
 public class Report<R : Message>(
     /** Name in the spec. */
     public val name: String,
     /** Command code. */
     public val code: Int,
-    /** Its message. */
+    /** The type of the message. */
     public val message: MessageType<R>,
-    /** What it is acknowledged with. */
+    /** The type of the acknowledgement. */
     public val acknowledgement: MessageType<*>,
 ) {
-    /** What people call it, in Chinese. */
+    /** Chinese title. */
     public var titleZh: String = name
         private set
 
-    /** What people call it, in English. */
+    /** English title. */
     public var titleEn: String = name
         private set
 
-    /** With what people call it. */
+    /** Sets the titles. */
     public fun titled(zh: String, en: String): Report<R> = apply {
         titleZh = zh
         titleEn = en
@@ -106,16 +106,16 @@ public class Report<R : Message>(
     internal var stateOf: ((R) -> State?)? = null
     internal var failureOf: ((R) -> Boolean)? = null
 
-    /** With another way to await its acknowledgement than the protocol's. */
+    /** Sets an acknowledgement policy other than the default of the protocol. */
     public fun ack(ack: AckPolicy): Report<R> = apply { this.ack = ack }
 
-    /** It comes at intervals of so many milliseconds. */
+    /** Sets the interval of a periodic report, in milliseconds. */
     public fun every(milliseconds: Long): Report<R> = apply { everyMillis = milliseconds }
 
-    /** What says how far the process has come; `null` if such a report does not say. */
+    /** Sets the function that returns the state of the process, or `null` if a report has none. */
     public fun state(state: (R) -> State?): Report<R> = apply { stateOf = state }
 
-    /** What says that something failed, where it is not the state. */
+    /** Sets the function that detects a failure, if the state does not. */
     public fun failure(failure: (R) -> Boolean): Report<R> = apply { failureOf = failure }
 
     internal fun stateIn(report: R): State? = stateOf?.invoke(report)
@@ -125,7 +125,7 @@ public class Report<R : Message>(
     override fun toString(): String = name
 }
 
-/** A refusal: the result code and text that a handler answers with, or that a robot has answered with. */
+/** The result code and text of a refusal, from a handler or a robot. */
 public class Refusal(
     /** Result code; not the one of success. */
     public val code: Long,

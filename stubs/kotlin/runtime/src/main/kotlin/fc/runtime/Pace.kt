@@ -1,25 +1,22 @@
 package fc.runtime
 
-/**
- * What a connection pays for when its frames make work and cannot be used: for a while nothing is read from it, and the others
- * have the robot to themselves.
- */
+/** The cost of useless frames of a connection. While it pays, the robot does not read from it and serves the others. */
 internal class Pace {
     private var owed = 0L
     private var at = 0L
 
-    /** When it may be read again. */
+    /** The time until which the connection is not read. */
     var until = 0L
         private set
 
-    /** A frame could not be used; whether the connection rests for it. */
+    /** Counts an unusable frame. Returns `true` if the connection must pause. */
     fun unusable(now: Long): Boolean {
         owed = maxOf(0, owed - (now - at)) + UNUSABLE
         at = now
         return rest(owed - UNUSABLE * FREE, now)
     }
 
-    /** So many bytes were decompressed beyond those that came; whether the connection rests for it. */
+    /** Counts decompressed bytes in excess of the compressed ones. Returns `true` if the connection must pause. */
     fun inflated(surplus: Long, now: Long): Boolean = rest(surplus * 1000 / INFLATED, now)
 
     private fun rest(milliseconds: Long, now: Long): Boolean {
@@ -29,13 +26,13 @@ internal class Pace {
     }
 
     private companion object {
-        /** What a frame costs that cannot be used, in milliseconds. */
+        /** Cost of an unusable frame, in milliseconds. */
         const val UNUSABLE = 1L
 
-        /** So many of these are free, and are so again once the time they cost has passed. */
+        /** Number of free unusable frames. They become free again after their cost in time. */
         const val FREE = 256L
 
-        /** How much may be decompressed, in bytes per second, beyond the bytes that came. */
+        /** Free rate of decompressed bytes in excess of the compressed ones, in bytes per second. */
         const val INFLATED = 128L * 1024 * 1024
     }
 }

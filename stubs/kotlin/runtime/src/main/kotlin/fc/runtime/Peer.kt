@@ -8,23 +8,23 @@ import kotlinx.coroutines.currentCoroutineContext
 import kotlinx.coroutines.isActive
 import kotlinx.coroutines.launch
 
-/** One app's command connection at a robot. */
+/** The command connection of one app to a robot. */
 internal class Peer(
     private val server: ServerCore,
     link: Link,
     val id: Long,
     val address: SocketAddress?,
-    /** What may be called from its address. */
+    /** The effects that its address may call. */
     private val effects: Set<Effect>,
 ) : Conversation(server.loop, link, server.config.decoder(server.protocol)), MemoryHolder {
-    /** A request in the hands of its handler. */
+    /** A request in its handler. */
     private class Work(
         val id: FrameId,
         val context: Context,
         val effect: Effect,
-        /** The handler as the user knows it. */
+        /** The handler object of the user. */
         val called: Any,
-        /** Bytes that are lent to the handler. */
+        /** Bytes lent to the handler. */
         val bytes: Long,
     ) {
         var job: Job? = null
@@ -32,7 +32,7 @@ internal class Peer(
         var isOver = false
     }
 
-    /** Runs a request, and makes the response of its result. */
+    /** Runs a request and creates the response. */
     private class Task(
         val called: Any,
         val context: Context,
@@ -56,17 +56,17 @@ internal class Peer(
     private var flyingBytes = 0L
     private val mostQueuedBytes = config.queuedBytes ?: limits.inflatedBytes
 
-    /** In the order of their beginning. Several may have one id. */
+    /** In order of start. Several may have the same id. */
     private val working = LinkedHashSet<Work>()
 
-    /** A request that waits for memory. The others wait behind it. */
+    /** A request that waits for memory. Later requests wait for it. */
     private var waiting: Frame? = null
 
-    /** Bytes that have to be lent for [waiting]. */
+    /** Bytes to be lent for [waiting]. */
     private var waitingBytes = 0L
     private var isDraining = false
 
-    /** Nothing more is read at all. What has been carried out is answered all the same. */
+    /** `true` once reading has ended. Completed requests still get their responses. */
     private var isDeaf = false
     private var headerSince = -1L
     private val arriving = RateWatch(config.leastRate, config.stallTimeout)
@@ -75,14 +75,14 @@ internal class Peer(
     private var wasReading = true
     private var lastFrame = loop.now
 
-    /** Something has been received. */
+    /** `true` once something has been received. */
     var isHeard = false
         private set
 
     override fun reads(): Boolean = !isDraining && !isDeaf && waiting == null && working.size < limits.inFlight &&
         unsent < HIGH_WATER && pace.until <= loop.now
 
-    /** Reports in flight and unsent bytes are mostly the same arrays. */
+    /** Reports in flight and unsent bytes mostly share their arrays. */
     override val held: Long
         get() = decoder.capacity + (waiting?.body?.size ?: 0) + queuedBytes - flyingBytes + maxOf(flyingBytes, unsent)
     override var counted = 0L
@@ -137,7 +137,7 @@ internal class Peer(
             }
             Incoming.Late -> unusable()
             Incoming.Command -> handle(frame, now)
-            // Robots take no reports, and streams have a port of their own.
+            // Robots take no reports, and streams use the data port.
             Incoming.Report, Incoming.Repeated, Incoming.Stream -> {
                 unusable()
                 refuse(id, protocol.results.protocol)
@@ -145,7 +145,7 @@ internal class Peer(
         }
     }
 
-    /** A frame has made work for nothing: after too many of these the connection rests. */
+    /** Counts a useless frame. After too many, the connection pauses. */
     private fun unusable() {
         if (!pace.unusable(loop.now)) return
         server.counting.add(ServerCount.CONNECTIONS_PACED)
@@ -186,7 +186,7 @@ internal class Peer(
                     if (task?.bytes != bytes) server.memory.giveBack(bytes)
                 }
                 task ?: return
-                // Short texts may have long lists.
+                // Short texts may contain long lists.
                 if (task.bytes != bytes && !server.memory.lend(this, task.bytes)) return defer(frame, task.bytes)
                 launch(id, task, now)
             }
@@ -212,7 +212,7 @@ internal class Peer(
 
     private fun said(result: ResultText, why: String) = Refusal(result.code, "${result.text}: $why")
 
-    /** Reads envelope and body in one pass, and looks at the time; `null` if the request has been refused. */
+    /** Reads envelope and body in one pass and checks the age. Returns `null` after a refusal. */
     private fun <Q : Message> read(
         type: MessageType<Q>,
         id: FrameId,
@@ -267,7 +267,7 @@ internal class Peer(
             }
         }
 
-    /** An answer made elsewhere: the envelope of success supplies the keys of the envelope that it lacks. */
+    /** Completes an untyped response with the missing envelope keys of success. */
     private fun completed(answer: Json): ByteArray {
         val keys = Bodies.decode(Keys, answer.text.toByteArray(), limits.json())
         val success = protocol.results.success
@@ -280,7 +280,7 @@ internal class Peer(
         return whole
     }
 
-    /** Has a handler at work until its deadline. */
+    /** Runs a handler until its deadline. */
     private fun launch(id: FrameId, task: Task, now: Long) {
         if (outlives(task.effect) && server.isAbandonedFull) {
             server.counting.add(ServerCount.ABANDONED_REACHED)
@@ -291,7 +291,7 @@ internal class Peer(
         val job = server.scope.launch(server.handlerFaults, CoroutineStart.LAZY) { run(work, task) }
         work.job = job
         working.add(work)
-        // A dispatcher that takes no more work cancels the job before it begins.
+        // A dispatcher that accepts no more work cancels the job before it starts.
         job.invokeOnCompletion { cause -> if (cause != null) loop.execute { finish(work) { cancelled(work) } } }
         work.deadline = loop.schedule(after(now, config.handlerTimeout ?: protocol.defaults.handlerTimeout)) { late(work) }
         try {
@@ -303,7 +303,7 @@ internal class Peer(
 
     private fun outlives(effect: Effect) = effect == Effect.MOTION || effect == Effect.UNKNOWN
 
-    /** On a thread of the handlers. */
+    /** Runs on a thread of the handlers. */
     private suspend fun run(work: Work, task: Task) {
         val end = try {
             onResponse(work, task.respond, task.handle())
@@ -338,13 +338,13 @@ internal class Peer(
         }
     }
 
-    /** The response breaks the spec. */
+    /** Handles a response that breaks the spec. */
     private fun onInvalid(work: Work, error: Exception): () -> Unit {
         server.handlerFailed(error, work.context, work.called) { "the response to $it breaks the spec" }
         return { refuse(work.id, protocol.results.protocol) }
     }
 
-    /** The handler has failed: that harms this call alone. */
+    /** Handles a failed handler, which affects only this call. */
     private fun onFailure(work: Work, failure: Throwable): () -> Unit {
         server.counting.add(ServerCount.HANDLERS_PANICKED)
         server.handlerFailed(failure, work.context, work.called) { "the handler of $it failed" }
@@ -356,7 +356,7 @@ internal class Peer(
     private fun encoded(response: Message, code: Long, text: String): Prepared =
         server.encoder.prepare(Bodies.write(Envelopes.response(protocol, System.currentTimeMillis(), code, text), response))
 
-    /** A handler has ended; [answer] unless nobody waits for it any more. */
+    /** Ends a handler and calls [answer], unless the app has stopped waiting. */
     private inline fun finish(work: Work, answer: () -> Unit) {
         if (work.isOver) return
         work.isOver = true
@@ -390,7 +390,7 @@ internal class Peer(
         if (body != null) send(body, id.answer())
     }
 
-    /** Encodes a refusal. `null` if no frame is long enough for its text. */
+    /** Encodes a refusal. Returns `null` if its text does not fit into a frame. */
     private fun refused(code: Long, text: String): Prepared? = try {
         encoded(Empty.INSTANCE, code, text)
     } catch (error: FrameError) {
@@ -400,9 +400,9 @@ internal class Peer(
 
     // Reports.
 
-    /** Queues a report. If the queue is full, the oldest in it give way. */
+    /** Queues a report. If the queue is full, the oldest reports are dropped. */
     fun push(report: Queued) {
-        // Reports that wait close no connection.
+        // Queued reports close no connection.
         while (queue.size >= limits.queuedReports || !hasPlace(report.body.length)) {
             val oldest = queue.removeFirstOrNull() ?: return drop(report)
             queuedBytes -= oldest.body.length
@@ -415,7 +415,7 @@ internal class Peer(
         wake()
     }
 
-    /** A report is no longer in flight. */
+    /** Removes a report in flight. */
     private fun landed(report: Queued) {
         queuedBytes -= report.body.length
         flyingBytes -= report.body.length
@@ -436,7 +436,7 @@ internal class Peer(
         report.ended(AckOutcome.DROPPED, null)
     }
 
-    /** Repetitions to different apps are spread over an eighth of the wait. */
+    /** Spreads the repetitions to different apps over an eighth of the wait. */
     private fun spread(policy: AckPolicy) =
         AckPolicy(minOf(policy.timeout + policy.timeout / 8 / PLACES * (id % PLACES), Settings.LONGEST), policy.retries)
 
@@ -469,7 +469,7 @@ internal class Peer(
         return minOf(minOf(due, rested), session.nextDue() ?: Long.MAX_VALUE)
     }
 
-    /** What does not come, or go, in time. */
+    /** Detects a connection without progress. Returns the next deadline. */
     private fun watch(now: Long): Long {
         val isReading = reads() && !isStarved
         if (isReading && !wasReading) arriving.begin(now)
@@ -483,7 +483,7 @@ internal class Peer(
         val idle = if (idleLimit != null && isIdle) after(lastFrame, idleLimit) else Long.MAX_VALUE
         if (header <= now || stalls <= now) {
             server.counting.add(ServerCount.CONNECTIONS_TIMED_OUT)
-            // Requests before it may still be carried out.
+            // Earlier requests may still complete.
             isDeaf = true
             return Long.MAX_VALUE
         }
@@ -497,7 +497,7 @@ internal class Peer(
 
     // The end.
 
-    /** Reads no more requests, and ends once everything is answered. */
+    /** Reads no more requests, and ends after all responses. */
     fun drain() {
         isDraining = true
         wake()
@@ -522,7 +522,7 @@ internal class Peer(
         if (isParting) server.gone() else server.leave(this)
     }
 
-    /** Nothing more will be answered. */
+    /** Cleans up: no more responses are sent. */
     fun left() {
         val reports = session.endIf { true } + queue
         queue.clear()
@@ -534,11 +534,11 @@ internal class Peer(
     }
 
     private companion object {
-        /** Beyond this much unsent, in bytes, nothing is read or taken up. */
+        /** Limit of unsent bytes above which the robot reads and starts no more requests. */
         const val HIGH_WATER = 256 * 1024
         const val PLACES = 32
 
-        /** A request takes about so many bytes for each byte of its text, which may be Chinese. */
+        /** Memory of a request per byte of its text, which may be Chinese. */
         const val TEXTS = 2L
     }
 }

@@ -1,8 +1,8 @@
 package fc.runtime
 
 /**
- * A protocol: every number and key that the runtime needs, and its operations. The generated part has the one of the
- * spec; this runtime knows none.
+ * A protocol: every number and key that the runtime needs, and its operations. The generated code defines the one of
+ * the spec; the runtime itself contains none.
  */
 public abstract class Protocol {
     /** Short name, for logs. */
@@ -17,7 +17,7 @@ public abstract class Protocol {
     /** TCP port of streams. */
     public abstract val dataPort: Int
 
-    /** The fixed bytes in front of the data area. */
+    /** The fixed bytes in front of the data. */
     public abstract val header: HeaderLayout
 
     /** First bytes of a request. */
@@ -35,28 +35,28 @@ public abstract class Protocol {
     /** Kind of a report and of its acknowledgement. */
     public abstract val reportKind: Int
 
-    /** Kinds that are refused by name. */
+    /** Kinds that the receiver refuses as reserved. */
     public open val reservedKinds: Set<Int> get() = emptySet()
 
-    /** Encoding of data sent as it is; 0 if the header does not say how data is packed. */
+    /** Encoding of uncompressed data; 0 if the header has no encoding. */
     public open val plainEncoding: Int get() = 0
 
-    /** Encoding of data sent as one gzip member; `null` if nothing is compressed. */
+    /** Encoding of data as one gzip member; `null` without compression. */
     public open val gzipEncoding: Int? get() = null
 
-    /** Quirk: a received plain length of 0 is accepted on a frame that is not compressed. */
+    /** Quirk: accepts a received plain length of 0 on an uncompressed frame. */
     public open val takesZeroPlainLength: Boolean get() = false
 
-    /** Keys that every request and report has beside its own. */
+    /** Envelope keys of requests and reports. */
     public abstract val requestEnvelope: MessageType<*>
 
-    /** Keys that every response and acknowledgement has beside its own. */
+    /** Envelope keys of responses and acknowledgements. */
     public abstract val responseEnvelope: MessageType<*>
 
-    /** Results that the runtime itself answers with. */
+    /** The results that the runtime itself responds with. */
     public abstract val results: Results
 
-    /** Times and limits where the user sets none. */
+    /** Default times and limits. */
     public abstract val defaults: Defaults
 
     /** Every command. */
@@ -68,39 +68,37 @@ public abstract class Protocol {
     override fun toString(): String = name
 }
 
-/** A result code and the text sent beside it. */
+/** A result code and its text. */
 public class ResultText(
-    /** Code. */
     public val code: Long,
-    /** Text. */
     public val text: String,
 )
 
-/** Results that the runtime itself answers with. */
+/** The results that the runtime itself responds with. */
 public class Results(
-    /** The call did what it should. */
+    /** The call succeeded. */
     public val success: ResultText,
     /** Unknown command, reserved kind, bad digest. */
     public val protocol: ResultText,
-    /** No answer from the handler in time. */
+    /** The handler did not finish in time. */
     public val timeout: ResultText,
-    /** A body that does not parse or breaks a constraint. */
+    /** The body cannot be read or breaks a constraint. */
     public val invalid: ResultText,
-    /** A message older than the configured age. */
+    /** The message is older than the configured age. */
     public val expired: ResultText,
 )
 
-/** Times and limits where the user sets none. */
+/** Default times and limits. */
 public class Defaults @JvmOverloads constructor(
-    /** How long a call waits for its response, in milliseconds. */
+    /** Longest wait of a call for its response, in milliseconds. */
     public val callTimeout: Long,
-    /** How long a handler may take before the app is told, in milliseconds. */
+    /** Longest time of a handler, after which the app gets a timeout, in milliseconds. */
     public val handlerTimeout: Long,
-    /** How acknowledgements of reports are awaited. */
+    /** The acknowledgement policy of reports. */
     public val ack: AckPolicy,
-    /** Bounds of everything that grows with what a peer sends. */
+    /** Limits of everything that grows with the data from a peer. */
     public val limits: Limits,
-    /** Oldest request that is still served, in milliseconds; `null` for any age. */
+    /** Greatest age of a request that is still handled, in milliseconds; `null` for any age. */
     public val maxAge: Long? = null,
 ) {
     init {
@@ -110,11 +108,11 @@ public class Defaults @JvmOverloads constructor(
     }
 }
 
-/** How the acknowledgement of a report is awaited. */
+/** Timeout and retries for the acknowledgement of a report. */
 public class AckPolicy(
-    /** How long to wait before sending the report again, in milliseconds; up to an eighth longer, by connection. */
+    /** Wait before the report is sent again, in milliseconds. It is up to an eighth longer, by connection. */
     public val timeout: Long,
-    /** How often to send it again before giving up. */
+    /** Number of times that the report is sent again. */
     public val retries: Int,
 ) {
     init {
@@ -123,9 +121,9 @@ public class AckPolicy(
     }
 }
 
-/** Bounds of everything that grows with what a peer sends. Each method gives the same bounds with one changed. */
+/** Limits of everything that grows with the data from a peer. Each method returns a copy with one limit changed. */
 public class Limits private constructor(private val values: LongArray) {
-    /** No bounds but these: the spec has them. */
+    /** Sets all limits. The spec defines them. */
     public constructor(
         frameBytes: Long,
         inflatedBytes: Long,
@@ -146,58 +144,58 @@ public class Limits private constructor(private val values: LongArray) {
         }
     }
 
-    /** Longest frame, header included, in bytes. */
+    /** Longest frame, including the header, in bytes. */
     public val frameBytes: Long get() = values[0]
 
-    /** Longest data after decompression, in bytes. */
+    /** Longest decompressed data, in bytes. */
     public val inflatedBytes: Long get() = values[1]
 
     /** Deepest nesting of a JSON body. */
     public val jsonDepth: Int get() = values[2].toInt()
 
-    /** Calls in flight on one connection. */
+    /** Most calls in flight on one connection. */
     public val inFlight: Int get() = values[3].toInt()
 
-    /** Reports waiting for one connection. */
+    /** Most reports that wait for one connection. */
     public val queuedReports: Int get() = values[4].toInt()
 
-    /** Connections at one server. */
+    /** Most connections to one server. */
     public val connections: Int get() = values[5].toInt()
 
-    /** Most bytes that one byte of compressed JSON may become, where more than 1 MiB come out. */
+    /** Largest compression ratio of JSON above 1 MiB. */
     public val inflateRatio: Long get() = values[6]
 
-    /** Most keys of objects and items of lists in a JSON body, those of all levels together. */
+    /** Most keys of objects and items of lists in a JSON body, over all levels. */
     public val jsonValues: Int get() = values[7].toInt()
 
-    /** Most memory for the items of lists that are read from a JSON body, in bytes. */
+    /** Most memory for the items of lists in a JSON body, in bytes. */
     public val jsonListBytes: Long get() = values[8]
 
-    /** With another [Limits.frameBytes]. */
+    /** Sets [Limits.frameBytes]. */
     public fun frameBytes(bytes: Long): Limits = with(0, minOf(bytes, MOST_BYTES))
 
-    /** With another [Limits.inflatedBytes]. */
+    /** Sets [Limits.inflatedBytes]. */
     public fun inflatedBytes(bytes: Long): Limits = with(1, minOf(bytes, MOST_BYTES))
 
-    /** With another [Limits.jsonDepth]. */
+    /** Sets [Limits.jsonDepth]. */
     public fun jsonDepth(levels: Int): Limits = with(2, levels.toLong())
 
-    /** With another [Limits.inFlight]. */
+    /** Sets [Limits.inFlight]. */
     public fun inFlight(calls: Int): Limits = with(3, calls.toLong())
 
-    /** With another [Limits.queuedReports]. */
+    /** Sets [Limits.queuedReports]. */
     public fun queuedReports(reports: Int): Limits = with(4, reports.toLong())
 
-    /** With another [Limits.connections]. */
+    /** Sets [Limits.connections]. */
     public fun connections(connections: Int): Limits = with(5, connections.toLong())
 
-    /** With another [Limits.inflateRatio]. */
+    /** Sets [Limits.inflateRatio]. */
     public fun inflateRatio(ratio: Long): Limits = with(6, ratio)
 
-    /** With another [Limits.jsonValues]. */
+    /** Sets [Limits.jsonValues]. */
     public fun jsonValues(values: Int): Limits = with(7, values.toLong())
 
-    /** With another [Limits.jsonListBytes]. */
+    /** Sets [Limits.jsonListBytes]. */
     public fun jsonListBytes(bytes: Long): Limits = with(8, bytes)
 
     private fun with(index: Int, value: Long): Limits = Limits(values.copyOf().also { it[index] = value })
@@ -212,10 +210,10 @@ public class Limits private constructor(private val values: LongArray) {
             "jsonListBytes",
         )
 
-        /** Data of so many bytes or fewer may have been compressed by any ratio. */
+        /** The compression ratio is not limited up to this length of the data, in bytes. */
         const val INFLATE_FREE = 1L shl 20
 
-        /** An array has no more. */
+        /** The largest array. */
         const val MOST_BYTES = Int.MAX_VALUE.toLong() - 64
     }
 }

@@ -1,80 +1,80 @@
 package fc.runtime
 
-/** Whom to send to. */
+/** The receivers of a report or stream. */
 public class Audience private constructor(internal val connection: Long?) {
     public companion object {
-        /** Every app connected at this moment. */
+        /** All connected apps. */
         @JvmField
         public val ALL: Audience = Audience(null)
 
-        /** One app, by its command connection. For a stream also one data connection, by its own number. */
+        /** One app, by its command connection. For a stream also one data connection, by its number. */
         @JvmStatic
         public fun one(connection: Long): Audience = Audience(connection)
     }
 }
 
-/** How a report ended at one app. */
+/** The kind of outcome of a report at one app. */
 public enum class AckOutcome {
-    /** The app has acknowledged it. */
+    /** The app acknowledged the report. */
     ACKNOWLEDGED,
 
-    /** The app has answered with another result than success. */
+    /** The app responded with a result other than success. */
     REFUSED,
 
-    /** The app has answered with something that is not an acknowledgement. */
+    /** The response of the app is not an acknowledgement. */
     INVALID,
 
-    /** No acknowledgement has come, and the report was repeated as often as it may be. */
+    /** No acknowledgement arrived, in spite of all retries. */
     TIMED_OUT,
 
-    /** The app was so slow that the report gave way to newer ones before it was sent. */
+    /** The queue of a slow app was full, and newer reports took its place. */
     DROPPED,
 
     /** The connection ended first. */
     CLOSED,
 }
 
-/** What has become of a report at one app. */
+/** The outcome of a report at one app. */
 public class Acknowledgement internal constructor(
-    /** The app. */
+    /** The connection of the app. */
     public val connection: Long,
-    /** How it ended. */
+    /** The kind of outcome. */
     public val outcome: AckOutcome,
-    /** What the app has answered with, if it has refused. */
+    /** The refusal of the app, if any. */
     public val refusal: Refusal?,
 ) {
     override fun toString(): String = "$connection: $outcome"
 }
 
-/** What can keep a report or stream from being queued. */
+/** The kind of an error that kept a report or stream from being queued. */
 public enum class PushErrorKind(
     /** The fixed name. */
     public val text: String,
 ) {
-    /** It breaks one of its own constraints. */
+    /** The report breaks one of its constraints. */
     INVALID("invalid_report"),
 
-    /** It does not fit into a frame. */
+    /** The data does not fit into a frame. */
     FRAME("frame"),
 
-    /** There is no such connection any more; for a stream: no data connection of that app. */
+    /** The connection is closed; for a stream: the app has no open data connection. */
     NO_CONNECTION("no_connection"),
 
-    /** Several apps share an address, and nothing tells whose data connection is whose. */
+    /** Several apps share the address, so the data connection matches none of them. */
     AMBIGUOUS("ambiguous"),
 }
 
-/** Why a report or stream was not even queued. */
+/** The error that kept a report or stream from being queued. */
 public class PushError internal constructor(
-    /** What went wrong. */
+    /** The kind of the error. */
     public val kind: PushErrorKind,
     cause: Exception? = null,
 ) : Exception(if (cause == null) kind.text else "${kind.text}: ${cause.message}", cause) {
-    /** The fixed name of what went wrong. */
+    /** The fixed name of the error. */
     public val name: String get() = kind.text
 }
 
-/** A report waiting for one app, or in flight to it. */
+/** A report that is queued for one app, or in flight to it. */
 internal class Queued(
     val code: Int,
     val policy: AckPolicy,

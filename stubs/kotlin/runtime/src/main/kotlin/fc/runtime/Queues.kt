@@ -2,17 +2,17 @@ package fc.runtime
 
 import kotlinx.coroutines.channels.Channel
 
-/** A report as it was received. */
+/** A received report. */
 public class ReceivedReport internal constructor(
     /** Command code. */
     public val code: Int,
     /** Message id. */
     public val id: Long,
-    /** The report, read as the type of its code; `null` if the spec does not have that code. */
+    /** The typed report; `null` if the spec does not define its code. */
     public val message: Message?,
     private val text: ByteArray,
 ) {
-    /** The whole JSON text, envelope included. */
+    /** The complete JSON text, including the envelope. */
     public val json: String get() = String(text, Charsets.UTF_8)
 
     internal val bytes: Int get() = text.size
@@ -20,7 +20,7 @@ public class ReceivedReport internal constructor(
     override fun toString(): String = "ReceivedReport(code=$code, id=$id, $bytes bytes)"
 }
 
-/** What comes to a receiver: a report, or what has been between one report and the next. */
+/** An event for a receiver: a report, or an event between two reports. */
 internal sealed interface Arrival {
     class Missed(val reports: Long) : Arrival
 
@@ -31,14 +31,14 @@ internal sealed interface Arrival {
     class Report(val report: ReceivedReport) : Arrival
 }
 
-/** Reports on their way to the app: a bounded queue for each receiver. Filled on the loop, emptied from anywhere. */
+/** Received reports in a bounded queue per receiver. The loop fills the queues, and any thread takes from them. */
 internal class Queues(private val limit: Int, private val bytesLimit: Long) {
     private val receivers = ArrayList<Receiver>()
 
-    /** Why no more will come. */
+    /** The reason of the end, if any. */
     private var over: Loss? = null
 
-    /** What waits for one receiver, of reports of one code or of any. */
+    /** The queue of one receiver, for reports with one code or any. */
     inner class Receiver(private val code: Int?) {
         private val waiting = ArrayDeque<Pair<Before, ReceivedReport>>()
         private var since = Before()
@@ -87,10 +87,10 @@ internal class Queues(private val limit: Int, private val bytesLimit: Long) {
             return report
         }
 
-        /** The oldest report, if there is one. */
+        /** Returns the oldest report, if any. */
         fun poll(): ReceivedReport? = synchronized(this@Queues) { pop() }
 
-        /** What comes next, the reports and what was between them, if there is anything. */
+        /** Returns the next event, if any. */
         fun pollArrival(): Arrival? = synchronized(this@Queues) {
             val before = waiting.firstOrNull()?.first ?: since
             val lost = before.lost
@@ -102,7 +102,7 @@ internal class Queues(private val limit: Int, private val bytesLimit: Long) {
             }
         }
 
-        /** What `poll` gives as soon as it gives something; `null` once nothing more will come. */
+        /** Waits until `poll` returns something. Returns `null` after the end. */
         suspend fun <T : Any> next(poll: () -> T?): T? {
             while (true) {
                 poll()?.let { return it }
@@ -114,7 +114,7 @@ internal class Queues(private val limit: Int, private val bytesLimit: Long) {
             }
         }
 
-        /** Why no more will come. */
+        /** The reason of the end, if any. */
         val end: Loss? get() = synchronized(this@Queues) { over }
 
         fun missed(): Long = synchronized(this@Queues) { missed.also { missed = 0 } }
@@ -131,11 +131,11 @@ internal class Queues(private val limit: Int, private val bytesLimit: Long) {
         var connected = false
     }
 
-    /** One more receiver, of reports of this code or of any. */
+    /** Adds a receiver of reports with this code, or any. */
     @Synchronized
     fun enter(code: Int?): Receiver = Receiver(code).also { receivers.add(it) }
 
-    /** Gives a report to all receivers that have room for it. Says how many had none; -1 if nobody has got it. */
+    /** Queues a report at all receivers with room. Returns how many had none, or -1 if none took it. */
     @Synchronized
     fun push(report: ReceivedReport): Int {
         val takers = receivers.filter { it.takes(report) }

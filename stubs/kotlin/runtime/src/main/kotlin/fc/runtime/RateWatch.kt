@@ -1,6 +1,6 @@
 package fc.runtime
 
-/** Whether bytes come, or go, as fast as they have to: so many in so much time are progress, fewer are none. */
+/** Watches the rate of a transfer. It makes progress if enough bytes pass within a time. */
 internal class RateWatch(rate: Int, private val within: Long) {
     private val least = maxOf(1, (within.toDouble() * rate / 1000).toLong())
     private var since = 0L
@@ -16,6 +16,6 @@ internal class RateWatch(rate: Int, private val within: Long) {
         if (bytes >= least) begin(now)
     }
 
-    /** When it has been too slow for too long. */
+    /** The time when the transfer times out. */
     val deadline: Long get() = after(since, within)
 }

@@ -4,32 +4,34 @@ import kotlinx.coroutines.flow.Flow
 import kotlinx.coroutines.flow.flow
 
 /**
- * The reports of a connection from the receiver's creation on, in the order they came.
+ * The reports of a connection since the creation of the receiver, in the order received.
  *
- * A report is acknowledged when at least one receiver has it in its queue; a receiver that had no room then has missed it.
- * It goes on over reconnecting, and ends when the connection is closed and the queue empty.
+ * A report is acknowledged when at least one receiver has it in its queue. A receiver without room then misses it. The
+ * receiver continues over reconnections. It ends when the connection is closed and the queue empty.
  */
 public class Reports internal constructor(private val receiver: Queues.Receiver) : AutoCloseable {
-    /** The next report; `null` once the connection is closed and no report is left. Cancelling loses none. */
+    /**
+     * Returns the next report, or `null` if the connection is closed and the queue empty. Cancelling loses no report.
+     */
     @JvmSynthetic
     public suspend fun receive(): ReceivedReport? = receiver.next(receiver::poll)
 
-    /** The next report, if it is there already. */
+    /** Returns the next report, if one is queued. */
     public fun poll(): ReceivedReport? = receiver.poll()
 
-    /** The reports as a flow, which ends as [receive] does. */
+    /** The reports as a flow. It ends like [receive]. */
     public fun asFlow(): Flow<ReceivedReport> = flow { while (true) emit(receive() ?: break) }
 
-    /** How many reports this receiver has missed since this was last asked, because its queue was full. */
+    /** Returns the number of reports missed since the last call, because the queue was full. */
     public fun missed(): Long = receiver.missed()
 
     /** Takes no more reports. */
     override fun close(): Unit = receiver.leave()
 }
 
-/** An event of a process that is being followed. */
+/** An event of a followed process. */
 public sealed class Followed<out R> {
-    /** The report, if it is one. */
+    /** The report of the event, if any. */
     public open val report: R? get() = null
 
     /** The process goes on. */
@@ -49,22 +51,22 @@ public sealed class Followed<out R> {
 
     /** The connection was lost. The events continue with the reports after the next connection. */
     public class Interrupted internal constructor(
-        /** Why. */
+        /** The reason of the loss. */
         public val loss: Loss,
     ) : Followed<Nothing>()
 
-    /** There is a connection again. What the robot has reported meanwhile may never come: query its state. */
+    /** The connection is up again. Reports may be missing: query the state of the robot. */
     public object Resumed : Followed<Nothing>()
 
-    /** Whether it says that the process is over, well or not: nothing comes after it. */
+    /** `true` for the last event: the process has ended or failed. */
     public val isOver: Boolean get() = this is Ended || this is Failed
 
     override fun toString(): String = "${javaClass.simpleName}(${report ?: ""})"
 }
 
-/** The connection is closed for good, and what is followed may go on. */
+/** The connection is closed for good. The followed process may go on. */
 public class FollowError internal constructor(
-    /** Why the connection was closed. */
+    /** The reason of the loss. */
     public val loss: Loss,
 ) : Exception("the connection is closed: $loss; the process may go on") {
     /** The fixed name. */
@@ -72,17 +74,17 @@ public class FollowError internal constructor(
 }
 
 /**
- * A command that has been answered, and the reports that it sets off.
+ * An accepted command and the reports of its process.
  *
- * It ends after [Followed.Ended], [Followed.Failed] or a [FollowError]. Where the spec says neither which state is the last
- * nor which are failures, it goes on until it is closed. A report whose state does not come after the one before is handed on
- * like any other and counted as out of order.
+ * It ends after [Followed.Ended], [Followed.Failed] or a [FollowError]. If the spec defines neither final states nor
+ * failures, it continues until it is closed. A report whose state violates the order is returned like any other and
+ * counted.
  */
 public class Following<A : Message, R : Message> internal constructor(
     private val core: ClientCore,
     private val receiver: Queues.Receiver,
     private val kind: Report<R>,
-    /** What the robot has answered to the command. */
+    /** The response of the robot to the command. */
     public val answer: A,
     private val belongs: (R) -> Boolean,
 ) : AutoCloseable {
@@ -90,9 +92,9 @@ public class Following<A : Message, R : Message> internal constructor(
     private var isOver = false
 
     /**
-     * What comes next; `null` after the end.
+     * Returns the next event, or `null` after the end.
      *
-     * @throws FollowError if nothing more will come although the process may go on
+     * @throws FollowError if the connection is closed although the process may go on
      */
     @JvmSynthetic
     public suspend fun receive(): Followed<R>? {
@@ -133,7 +135,7 @@ public class Following<A : Message, R : Message> internal constructor(
         }
     }
 
-    /** What comes as a flow, which ends as [receive] does. */
+    /** The events as a flow. It ends like [receive]. */
     public fun asFlow(): Flow<Followed<R>> = flow {
         try {
             while (true) emit(receive() ?: break)
@@ -142,7 +144,7 @@ public class Following<A : Message, R : Message> internal constructor(
         }
     }
 
-    /** Follows no further. */
+    /** Stops following. */
     override fun close() {
         isOver = true
         receiver.leave()

@@ -18,7 +18,7 @@ import kotlinx.coroutines.coroutineScope
 import kotlinx.coroutines.future.future
 import kotlinx.coroutines.suspendCancellableCoroutine
 
-/** A robot: listens at both ports, and has a [Service] carry out what apps ask for. Any thread may use it. */
+/** A robot. It listens on both ports and handles requests with a [Service]. Any thread may use it. */
 public class Server internal constructor(
     internal val core: ServerCore,
     private val commands: ServerSocketChannel?,
@@ -26,17 +26,17 @@ public class Server internal constructor(
 ) : AutoCloseable {
     private val protocol = core.protocol
 
-    /** Where apps connect to send commands. */
+    /** The address of the command port. */
     public val commandAddress: InetSocketAddress get() = checkNotNull(commands).socket().localSocketAddress as InetSocketAddress
 
-    /** Where apps connect for streams. */
+    /** The address of the data port. */
     public val dataAddress: InetSocketAddress get() = checkNotNull(data).socket().localSocketAddress as InetSocketAddress
 
     /**
-     * Sends a report to one app or to all, and waits until each has acknowledged it or will not. Each app has its own queue;
-     * a slow one holds up nobody else.
+     * Sends a report to one app, or to all, and waits until it has ended at each. Each app has its own queue, so a slow
+     * one does not delay the others.
      *
-     * @throws PushError if it was not even queued
+     * @throws PushError if it was not queued
      */
     @JvmSynthetic
     public suspend fun <R : Message> push(audience: Audience, report: Report<R>, message: R): List<Acknowledgement> {
@@ -76,14 +76,14 @@ public class Server internal constructor(
     ): CompletableFuture<List<Acknowledgement>> = SCOPE.future { push(audience, report, message) }
 
     /**
-     * Sends a frame of raw bytes to the data connections of one app or of all: [code] says what they belong to, [id] which
-     * request they answer. Each data connection has a short queue; this waits for room in all of them, but in none longer than
-     * the stall timeout. Gives the number of connections that took the frame.
+     * Sends a frame of raw bytes to the data connections of one app, or of all. [code] is the stream, [id] the request
+     * that the bytes belong to. Each data connection has a short queue. The call waits for space in all of them, at
+     * most for the stall timeout. Returns the number of connections that took the frame.
      *
-     * The protocol ties a data connection to an app by nothing but the address: it is that of an app if the app's command
-     * connection is the only one that has been open at that address meanwhile.
+     * In the protocol, only the address relates a data connection to an app. A data connection belongs to a command
+     * connection if no other one was open at the same address in the meantime.
      *
-     * @throws PushError if there is no connection to send to, or if it cannot be told which
+     * @throws PushError if there is no connection to send to, or it is ambiguous
      */
     @JvmSynthetic
     public suspend fun sendStream(audience: Audience, code: Int, id: Long, data: ByteArray): Int {
@@ -104,7 +104,7 @@ public class Server internal constructor(
         }
     }
 
-    /** Sends a frame with a JSON object, without an envelope; all else is as with bytes. */
+    /** Sends a frame with a JSON object, without an envelope, like one with raw bytes. */
     @JvmSynthetic
     public suspend fun sendStream(audience: Audience, code: Int, id: Long, content: Message): Int {
         try {
@@ -120,24 +120,24 @@ public class Server internal constructor(
         SCOPE.future { sendStream(audience, code, id, data) }
 
     /**
-     * The frames of raw bytes that apps send from now on. While nobody takes them, they are dropped and counted; while the
-     * receiver is busy, apps are not read. A later call takes over.
+     * Returns the frames of raw bytes that apps send from now on. Without a receiver, they are dropped and counted.
+     * While the receiver is busy, apps are not read. A later call replaces the receiver.
      */
     public fun streams(): AppStreams = AppStreams(core.inbox, core.inbox.enter())
 
-    /** The apps connected at this moment, by their connections. */
+    /** Returns the connected apps with their connections. */
     @JvmSynthetic
     public suspend fun connections(): Map<Long, SocketAddress?> = onLoop { core.connections() }
 
-    /** Bytes that apps make the robot hold at this moment; see [ServerConfig.memory]. */
+    /** Bytes that apps make the robot hold now; see [ServerConfig.memory]. */
     public val memory: Long get() = core.memory.total
 
-    /** What the robot has seen so far. */
+    /** The counters of the robot. */
     public val counters: ServerCounters get() = ServerCounters(core.counting.read())
 
     /**
-     * Ends the robot: accepts nothing more, reads no more requests, answers those that are being handled, waits for handlers
-     * that run on, and cuts off after [grace] what is not done by then. Returns when all is over. Of several calls, the
+     * Shuts down gracefully and waits for the end. The robot stops accepting connections and requests, responds to the
+     * current requests, and waits for abandoned handlers. After [grace], it closes the rest. Of several calls, the
      * earliest end counts.
      */
     @JvmSynthetic
@@ -157,7 +157,7 @@ public class Server internal constructor(
         null
     }
 
-    /** Ends the robot at once. */
+    /** Closes the robot at once. */
     override fun close() {
         stopListening()
         core.loop.execute {
@@ -185,14 +185,14 @@ public class Server internal constructor(
     }
 
     public companion object {
-        /** Where what Java has asked for goes on. */
+        /** Runs the calls from Java. */
         private val SCOPE = CoroutineScope(SupervisorJob() + Dispatchers.Default)
 
         /**
-         * Listens at both ports, and serves from now on.
+         * Listens on both ports and serves from now on.
          *
-         * @param dispatcher where handlers run
-         * @throws IOException if a port cannot be had
+         * @param dispatcher runs the handlers
+         * @throws IOException if a port is not available
          */
         @JvmStatic
         @JvmOverloads

@@ -8,7 +8,7 @@ import kotlinx.coroutines.CoroutineExceptionHandler
 import kotlinx.coroutines.CoroutineScope
 import kotlinx.coroutines.Job
 
-/** A robot without threads and sockets: all of it happens on its loop, but for handlers, which run in [scope]. */
+/** A robot without threads and sockets. It runs on its loop, except for handlers, which run in [scope]. */
 internal class ServerCore(
     val protocol: Protocol,
     val config: ServerConfig,
@@ -28,7 +28,7 @@ internal class ServerCore(
     }
     val lines = Lines(config.log, protocol) { loop.now }
 
-    /** Takes what fails around handlers, as in their dispatcher. */
+    /** Takes failures around handlers, such as those of their dispatcher. */
     val handlerFaults = CoroutineExceptionHandler { _, failure ->
         loop.execute { lines.failed("the dispatcher of handlers failed", failure) }
     }
@@ -37,7 +37,7 @@ internal class ServerCore(
     val memory: MemoryBudget = MemoryBudget(config.memory, { peers + dataPeers }, { inbox.bytes }, ::evict)
     private var lastConnection = 0L
 
-    /** Handlers that run on though nobody waits for their answer. */
+    /** Handlers that continue without a waiting app. */
     private val abandoned = HashSet<Job>()
     private var life = Life.RUNNING
     private var cutOff: Timer? = null
@@ -46,7 +46,7 @@ internal class ServerCore(
 
     private enum class Life { RUNNING, STOPPING, OVER }
 
-    /** Serves a command connection; whether it may be. */
+    /** Serves a command connection. Returns `false` if it is refused. */
     fun serve(link: Link, address: SocketAddress?): Boolean {
         val effects = allowed(address) ?: return false
         val peer = Peer(this, link, ++lastConnection, address, effects)
@@ -59,12 +59,12 @@ internal class ServerCore(
         return true
     }
 
-    /** Serves a data connection; whether it may be. */
+    /** Serves a data connection. Returns `false` if it is refused. */
     fun serveData(link: Link, address: SocketAddress?): Boolean {
         allowed(address) ?: return false
         val peer = DataPeer(this, link, ++lastConnection, address)
         val isAdmitted = admit(dataPeers, peer, address, { it.address }) { silent ->
-            // Whoever only receives is known by his commands.
+            // An app that only receives streams is recognized by its commands.
             !silent.isHeard && peers.none { it.isHeard && isSame(it.address, silent.address) }
         }
         if (!isAdmitted) return false
@@ -91,11 +91,11 @@ internal class ServerCore(
         leave(peer)
     }
 
-    /** Logs an error of a handler or its response, and tells the hook. On the thread of the handler. */
+    /** Logs an error of a handler or its response, and calls the hook. Runs on the thread of the handler. */
     fun handlerFailed(error: Throwable, context: Context, called: Any, what: (String) -> String) {
         val name = commands[context.code]?.name
         val line = what(name ?: String.format(Locale.ROOT, "0x%04X", context.code))
-        // An app chooses the codes without a command: they are one cause.
+        // Apps choose the codes, so all unknown codes are one cause.
         loop.execute { lines.failed(line, error, called, what(name ?: "")) }
         val hook = config.onHandlerError ?: return
         try {
@@ -105,7 +105,7 @@ internal class ServerCore(
         }
     }
 
-    /** What may be called from an address; `null` if nobody may connect from there. */
+    /** Returns the effects that an address may call, or `null` if it may not connect. */
     private fun allowed(address: SocketAddress?): Set<Effect>? {
         val effects = config.allowed.effects(host(address))
         if (effects == null) {
@@ -119,7 +119,7 @@ internal class ServerCore(
 
     private fun isSame(one: SocketAddress?, other: SocketAddress?) = host(one) == host(other)
 
-    /** Enters a connection. Where there are too many, a silent one gives way; where there is none, the new one does. */
+    /** Adds a connection. At the limit, it replaces a silent one. Returns `false` if there is none. */
     private fun <P : Conversation> admit(
         table: ArrayList<P>,
         peer: P,
@@ -131,7 +131,7 @@ internal class ServerCore(
         val crowd = table.groupingBy { host(addressOf(it)) }.eachCount()
         val isCrowded = (crowd[host(address)] ?: 0) >= config.connectionsPerAddress
         if (isCrowded || table.size >= limits.connections) {
-            // Of the address that most come from, the one that has been there for longest.
+            // The oldest from the address with most connections.
             val silent = table.filter { (!isCrowded || isSame(addressOf(it), address)) && isSilent(it) }
             val displaced = silent.maxByOrNull { crowd[host(addressOf(it))] ?: 0 }
             if (displaced == null) {
@@ -157,7 +157,7 @@ internal class ServerCore(
         lookForEnd()
     }
 
-    /** Connections that still say goodbye hold up the end, too. */
+    /** Number of closing connections, which also delay the end. */
     var parting = 0
         private set
 
@@ -170,11 +170,11 @@ internal class ServerCore(
         lookForEnd()
     }
 
-    // Handlers that run on.
+    // Abandoned handlers.
 
     val isAbandonedFull: Boolean get() = config.abandonedHandlers > 0 && abandoned.size >= config.abandonedHandlers
 
-    /** Nobody waits for a handler any more: it runs on, or is dropped. */
+    /** Abandons a handler without a waiting app: it continues or is cancelled. */
     fun abandon(job: Job, effect: Effect) {
         val runsOn = (effect == Effect.MOTION || effect == Effect.UNKNOWN) && config.abandonedHandlers > 0 && life != Life.OVER
         if (!runsOn) return job.cancel()
@@ -197,7 +197,7 @@ internal class ServerCore(
         return found.size
     }
 
-    /** The data connections of an audience. */
+    /** Returns the data connections of an audience. */
     fun dataAudience(audience: Audience): List<DataPeer> {
         val app = audience.connection ?: return dataPeers.toList()
         dataPeers.firstOrNull { it.id == app }?.let { return listOf(it) }
@@ -212,7 +212,10 @@ internal class ServerCore(
 
     // The end.
 
-    /** Takes no more connections and requests, answers what is being handled, and cuts off what is not done by then. */
+    /**
+     * Shuts down: takes no more connections and requests, responds to the current ones, and closes the rest after
+     * [grace].
+     */
     fun stop(grace: Long, over: () -> Unit) {
         waitsForEnd.add(over)
         if (life == Life.RUNNING) life = Life.STOPPING
@@ -236,7 +239,7 @@ internal class ServerCore(
         over()
     }
 
-    /** Breaks every connection, as a network may. */
+    /** Breaks every connection, as a network failure does. */
     fun breakAll() {
         for (peer in peers.toList() + dataPeers.toList()) {
             leave(peer)

@@ -6,17 +6,17 @@ import java.util.function.BiFunction
 import kotlinx.coroutines.CompletableDeferred
 import kotlinx.coroutines.future.await
 
-/** What a handler is told beside the request. */
+/** The context of a request, for its handler. */
 public class Context internal constructor(
-    /** Address of the app; `null` of a connection that has none. */
+    /** Address of the app; `null` for a connection without an address. */
     public val peer: SocketAddress?,
-    /** Connection of the app, as the audience of a report. */
+    /** Connection of the app, for [Audience.one]. */
     public val connection: Long,
     /** Message id of the request. */
     public val id: Long,
     /** Command code of the request. */
     public val code: Int,
-    /** When the request was made, in milliseconds since 1970-01-01T00:00:00Z, if it says so. */
+    /** Creation time of the request, in milliseconds since 1970-01-01T00:00:00Z; `null` if the envelope has none. */
     public val timeMs: Long?,
     private val notImplemented: () -> Refusal,
     private val unknown: Refusal,
@@ -25,8 +25,8 @@ public class Context internal constructor(
     internal val gone = CompletableDeferred<Unit>()
 
     /**
-     * Whether nobody waits for the answer any more: the connection has ended, or the handler timeout is over and the app has
-     * been told so. The handler of a command that sets something in motion runs on then.
+     * `true` once the app has stopped waiting: the connection has ended, or the handler timeout has passed and the app
+     * knows. The handler of a command that moves the robot continues then.
      */
     public val isAbandoned: Boolean get() = gone.isCompleted
 
@@ -34,7 +34,7 @@ public class Context internal constructor(
     @JvmSynthetic
     public suspend fun abandoned(): Unit = gone.await()
 
-    /** Runs [action] once [isAbandoned]. For Java. An exception of it is logged. */
+    /** Runs [action] once [isAbandoned]. For Java. Its exceptions are logged. */
     public fun onAbandoned(action: Runnable) {
         gone.invokeOnCompletion {
             try {
@@ -45,47 +45,47 @@ public class Context internal constructor(
         }
     }
 
-    /** The refusal of a command that the spec has and this robot does not carry out: nothing has been done. */
+    /** The refusal of a command that the spec defines and this robot does not implement. */
     public fun notImplemented(): Refusal = notImplemented.invoke()
 
-    /** The refusal of a command that there is not. */
+    /** The refusal of a command that does not exist. */
     public fun unknown(): Refusal = unknown
 }
 
-/** Carries out one command: gives the response, or throws a [Refusal]. */
+/** Handles one command: returns the response, or throws a [Refusal]. */
 public fun interface Handler<Q : Message, A : Message> {
-    /** Carries it out. */
+    /** Handles a request. */
     public suspend fun handle(context: Context, request: Q): A
 }
 
-/** A request as received, but known to be a JSON object. */
+/** An untyped request, which is a JSON object. */
 public class RawRequest internal constructor(
     /** Command code. */
     public val code: Int,
-    /** The whole JSON text, envelope included. */
+    /** The complete JSON text, including the envelope. */
     public val json: Json,
 ) {
     override fun toString(): String = "RawRequest(code=$code, ${json.text.length} characters)"
 }
 
 /**
- * Carries out commands that have no type: gives a JSON object of the response's own keys, or throws a [Refusal]. A key of the
- * envelope in it is sent as it is; the envelope of success supplies those that it lacks.
+ * Handles untyped commands: returns a JSON object with the keys of the response, or throws a [Refusal]. Envelope keys
+ * in it are sent unchanged; the missing ones are those of success.
  */
 public fun interface RawHandler {
-    /** Carries it out. */
+    /** Handles a request. */
     public suspend fun handle(context: Context, request: RawRequest): Json
 }
 
 /**
- * What serves requests: a handler for each command. What has none is refused: as not implemented if the spec has it, as unknown
- * if not.
+ * Serves requests with a handler per command. A command without a handler is refused: as not implemented if the spec
+ * defines it, otherwise as unknown.
  */
 public class Service {
-    /** A command and its handler. The log names the class of [called], the object of the user, if no line is known. */
+    /** A command and its handler. If no line is known, the log names the class of [called], the object of the user. */
     internal class Entry<Q : Message, A : Message>(val command: Command<Q, A>, val handler: Handler<Q, A>, val called: Any)
 
-    /** A handler of commands without a type. */
+    /** A handler of untyped commands. */
     internal class RawEntry(val handler: RawHandler, val called: Any)
 
     internal val entries = HashMap<Int, Entry<*, *>>()
@@ -95,7 +95,7 @@ public class Service {
     internal fun rawHandler(code: Int, isKnown: Boolean): RawEntry? =
         ranges.firstOrNull { code in it.first }?.second ?: unknown.takeIf { !isKnown }
 
-    /** Has [handler] carry out what comes with a code from [first] to [last] that has no handler of its own. */
+    /** Sets the handler of codes from [first] to [last] without another handler. */
     @JvmSynthetic
     public fun onRange(first: Int, last: Int, handler: RawHandler): Service = range(first, last, RawEntry(handler, handler))
 
@@ -112,17 +112,17 @@ public class Service {
         handler: BiFunction<Context, RawRequest, CompletionStage<Json>>,
     ): Service = range(first, last, RawEntry({ context, request -> handler.apply(context, request).await() }, handler))
 
-    /** Has [handler] carry out what comes with a code that the spec does not have. */
+    /** Sets the handler of codes that the spec does not define. */
     @JvmSynthetic
     public fun onUnknown(handler: RawHandler): Service = apply { unknown = RawEntry(handler, handler) }
 
-    /** Has [handler] carry out a command. */
+    /** Sets the handler of a command. */
     @JvmSynthetic
     public fun <Q : Message, A : Message> on(command: Command<Q, A>, handler: Handler<Q, A>): Service = apply {
         entries[command.code] = Entry(command, handler, handler)
     }
 
-    /** [on] for Java: the stage fails with a [Refusal] where the command is refused. */
+    /** [on] for Java. To refuse the command, fail the stage with a [Refusal]. */
     public fun <Q : Message, A : Message> onAsync(
         command: Command<Q, A>,
         handler: BiFunction<Context, Q, CompletionStage<A>>,

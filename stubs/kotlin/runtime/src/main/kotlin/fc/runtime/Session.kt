@@ -3,28 +3,28 @@ package fc.runtime
 import java.util.ArrayDeque
 import java.util.PriorityQueue
 
-/** What a frame that has arrived means. */
+/** The meaning of a received frame. */
 internal sealed interface Incoming<out T> {
-    /** The answer to a request in flight, which has ended with it. */
+    /** The response to a request in flight, which ends with it. */
     class Answer<T>(val token: T) : Incoming<T>
 
-    /** An answer that nobody waits for (any more): drop it. */
+    /** A response without a request in flight: drop it. */
     object Late : Incoming<Nothing>
 
-    /** A command: handle it and answer. */
+    /** A command: handle it and respond. */
     object Command : Incoming<Nothing>
 
-    /** A report: hand it on, then say so with [Session.handedOn], and acknowledge it. */
+    /** A report: hand it on, call [Session.handedOn], and acknowledge it. */
     object Report : Incoming<Nothing>
 
-    /** A report that has been handed on already: acknowledge it again, nothing else. */
+    /** A report that was handed on before: only acknowledge it again. */
     object Repeated : Incoming<Nothing>
 
     /** Raw bytes. */
     object Stream : Incoming<Nothing>
 }
 
-/** What time has brought about for a request in flight. */
+/** A request whose wait has ended. */
 internal sealed interface Due<out T> {
     val frame: FrameId
     val token: T
@@ -32,16 +32,16 @@ internal sealed interface Due<out T> {
     /** Send it again, with the same id. */
     class Again<T>(override val frame: FrameId, override val token: T) : Due<T>
 
-    /** There is no answer, and no repetition is left: it has ended. */
+    /** The request has ended: no response and no retry is left. */
     class Expired<T>(override val frame: FrameId, override val token: T) : Due<T>
 }
 
 /**
- * Which answer belongs to which request, what is due, what has been seen before. App and robot use the same machine: the
- * one opens commands and receives reports, the other the reverse.
+ * Matches responses with requests, finds due retries, and detects repeated reports. App and robot use the same session:
+ * the app opens commands and receives reports, the robot vice versa.
  *
- * It has neither sockets nor a clock: it is told what has happened and what time it is, in milliseconds. Every token given
- * to [open] comes back exactly once. Ids count on from [firstId], and from 0 behind the largest.
+ * It has neither sockets nor a clock: the caller feeds it events and the time in milliseconds. Every token given to
+ * [open] returns exactly once. Ids count up from [firstId], and continue at 0 after the largest.
  */
 internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: AckPolicy, firstId: Long) {
     private class Entry<T>(
@@ -59,26 +59,26 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
 
     private val idMax = protocol.header.idMax
 
-    // No more than half of all ids: one that was in use a moment ago is not the next.
+    // At most half of all ids, so that an id in recent use is not the next.
     private val halfOfIds = minOf(idMax / 2 + 1, Int.MAX_VALUE.toLong()).toInt()
     private val limit = minOf(limits.inFlight, halfOfIds)
     private val open = HashMap<Long, Entry<T>>()
 
-    /** When which id is due, among them those of requests that have ended since. */
+    /** The deadlines with their ids. May contain requests that have ended. */
     private val deadlines = PriorityQueue<Deadline>()
     private var nextId = firstId and idMax
     private var order = 0L
 
-    // A peer repeats what is in flight, and as much of it as its own limit allows.
+    // A peer repeats the reports in flight, up to its own limit.
     private val seen = Seen(
         minOf(maxOf(limits.queuedReports, limits.inFlight, protocol.defaults.limits.inFlight), halfOfIds),
         saturated(2 * (ack.retries.toLong() + 1), ack.timeout),
     )
 
-    /** How many requests are in flight. */
+    /** Number of requests in flight. */
     val inFlight: Int get() = open.size
 
-    /** Puts a request in flight and gives the id to send it with; `null` if too many are. */
+    /** Opens a request and returns its id, or `null` if too many are in flight. */
     fun open(kind: Int, code: Int, policy: AckPolicy, now: Long, token: T): FrameId? {
         if (open.size >= limit) return null
         while (open.containsKey(nextId)) nextId = nextId + 1 and idMax
@@ -91,7 +91,7 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
         return frame
     }
 
-    /** Says what a frame means. The [digest] tells reports apart that came over different connections. */
+    /** Returns the meaning of a frame. The [digest] distinguishes reports over different connections. */
     fun receive(frame: FrameId, digest: ByteArray?, now: Long): Incoming<T> {
         if (frame.isResponse) {
             val entry = end(frame) ?: return Incoming.Late
@@ -104,13 +104,13 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
         }
     }
 
-    /** Remembers that a report has been handed on. */
+    /** Remembers a report that was handed on. */
     fun handedOn(report: FrameId, digest: ByteArray?, now: Long): Unit = seen.insert(report, digest, now)
 
-    /** Notes that what comes from now on comes over another connection. */
+    /** Notes that the following frames arrive over a new connection. */
     fun reconnected(): Unit = seen.reconnected()
 
-    /** Ends a request because nobody waits for its answer any more; whether it was in flight. */
+    /** Cancels a request. Returns `true` if it was in flight. */
     fun cancel(request: FrameId): Boolean = end(request) != null
 
     private fun end(frame: FrameId): Entry<T>? {
@@ -120,7 +120,7 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
         return entry
     }
 
-    /** What is due; call it until it gives `null`. */
+    /** Returns the next due request. Call it until it returns `null`. */
     fun due(now: Long): Due<T>? {
         while (true) {
             val first = deadlines.peek() ?: return null
@@ -139,7 +139,7 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
         }
     }
 
-    /** When something is due; `null` for never. */
+    /** Returns the next deadline, or `null` if there is none. */
     fun nextDue(): Long? {
         while (true) {
             val first = deadlines.peek() ?: return null
@@ -150,7 +150,7 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
 
     private fun entryOf(deadline: Deadline): Entry<T>? = open[deadline.id]?.takeIf { it.due == deadline.due }
 
-    /** Most requests end before they are due: as many deadlines are forgotten as have gathered since the last time. */
+    /** Most requests end before their deadline. Once enough of these have accumulated, they are removed. */
     private fun forget() {
         if (deadlines.size < 2 * open.size + 16) return
         val kept = deadlines.filter { entryOf(it) != null }
@@ -158,7 +158,7 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
         deadlines.addAll(kept)
     }
 
-    /** Ends every request in flight that [ends] says so of, as when the connection is lost. */
+    /** Ends every request in flight for which [ends] returns `true`, such as after a loss. */
     fun endIf(ends: (T) -> Boolean): List<T> {
         val ended = open.values.filter { ends(it.token) }.sortedBy { it.due }
         for (entry in ended) open.remove(entry.frame.id)
@@ -166,17 +166,17 @@ internal class Session<T>(private val protocol: Protocol, limits: Limits, ack: A
     }
 }
 
-/** The time [wait] after [now], which is never beyond all times. */
+/** Returns the time [wait] after [now], without overflow. */
 internal fun after(now: Long, wait: Long): Long = if (wait > Long.MAX_VALUE / 2) Long.MAX_VALUE / 2 else now + wait
 
 private fun saturated(factor: Long, time: Long): Long =
     if (time > 0 && factor > Long.MAX_VALUE / 4 / time) Long.MAX_VALUE / 4 else factor * time
 
 /**
- * Reports handed on not long ago, so that a repetition is not handed on again; bounded in number.
+ * A bounded window over the last reports handed on, so that a repetition is not handed on again.
  *
- * What has the same id *and* the same data is the same report, whenever it comes. What has only the same id is the same
- * report if it comes soon and over the same connection; later, or over another one, it is another report.
+ * A report with the same id and data is a repetition at any time. A report with only the same id is a repetition if it
+ * arrives soon and over the same connection. Otherwise it is new.
  */
 private class Seen(private val length: Int, private val age: Long) {
     private class Entry(val frame: FrameId, val digest: ByteArray?, val connection: Long, val at: Long)
@@ -184,7 +184,7 @@ private class Seen(private val length: Int, private val age: Long) {
     /** Oldest first. */
     private val window = ArrayDeque<Entry>()
 
-    /** How many in the window have which id: nearly every report is new, and is seen to be so at a glance. */
+    /** The number of reports per id in the window. It shows quickly that a report is new, as nearly all are. */
     private val ids = HashMap<Long, Int>()
     private var connection = 0L
 
@@ -192,7 +192,7 @@ private class Seen(private val length: Int, private val age: Long) {
         connection++
     }
 
-    /** Whether this report has been handed on. If so, its age counts from now. */
+    /** Returns `true` if this report was handed on. Its age then restarts. */
     fun contains(frame: FrameId, digest: ByteArray?, now: Long): Boolean {
         if (frame.id !in ids) return false
         val newestFirst = window.descendingIterator()

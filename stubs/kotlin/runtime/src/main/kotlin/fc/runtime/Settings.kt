@@ -2,14 +2,14 @@ package fc.runtime
 
 import java.util.concurrent.TimeUnit
 
-/** Checks of settings and call options. A wrong value throws `IllegalArgumentException` in the call that sets it. */
+/** Checks of settings and call options. An invalid value throws `IllegalArgumentException` in the call that sets it. */
 internal object Settings {
     /** The longest time of a setting, in milliseconds. Sums of a few such times fit into a `Long`. */
     const val LONGEST: Long = Long.MAX_VALUE / 16
 
     private const val MOST_PORT = 65_535
 
-    /** Characters of a wrong string that an error shows. */
+    /** Most characters of an invalid string in an error. */
     private const val SHOWN = 60
 
     fun integer(name: String, value: Int, least: Int, most: Int = Int.MAX_VALUE): Int {
@@ -27,17 +27,17 @@ internal object Settings {
     /** A port to connect to. */
     fun port(name: String, port: Int): Int = integer(name, port, 1, MOST_PORT)
 
-    /** A port to listen at; 0 for any free one. */
+    /** A port to listen on; 0 for any free port. */
     fun listening(name: String, port: Int): Int = integer(name, port, 0, MOST_PORT)
 
-    /** A time from 0 in milliseconds. A positive time below a millisecond is one, not none. */
+    /** A time of at least 0, in milliseconds. A positive time below one millisecond becomes one, not 0. */
     fun duration(name: String, time: Long, unit: TimeUnit): Long {
         require(time >= 0) { wrong(name, "$time ${unit.name.lowercase()}", "a time from 0") }
         val whole = unit.toMillis(time)
         return if (whole == 0L && time > 0) 1 else minOf(whole, LONGEST)
     }
 
-    /** A name or address. To the system, an empty one is its own host. */
+    /** A name or address. The system takes an empty one for its own host. */
     fun host(name: String, host: String): String {
         require(host.isNotBlank() && '\u0000' !in host) { wrong(name, "\"${host.take(SHOWN)}\"", "a name or address") }
         return host

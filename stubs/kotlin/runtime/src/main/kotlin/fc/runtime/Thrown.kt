@@ -1,13 +1,15 @@
 package fc.runtime
 
-/** Errors of user code as the log shows them: class and place. The message is left out, because it may quote a body. */
+/**
+ * Describes errors of user code in the log by class and place. The message is left out, because it may quote a body.
+ */
 internal class Thrown(protocol: Protocol?) {
-    /** The package of the generated part: user code calls it, and it calls user code. */
+    /** The package of the generated code, which calls user code and is called by it. */
     private val generated = protocol?.javaClass?.name?.let(::packageOf)
 
     /**
-     * The class of an error, and its innermost line of user code. If no line is known, the class of [called] replaces it: the
-     * object whose method failed.
+     * Returns the class of an error, and its innermost line of user code. If no line is known, the class of [called]
+     * replaces it: the object whose method failed.
      */
     fun describe(error: Throwable, called: Any? = null): String = try {
         val frames = generateSequence(error) { it.cause }.take(CAUSES).map { it.stackTrace.takeWhile(::isInside) }
@@ -15,16 +17,16 @@ internal class Thrown(protocol: Protocol?) {
         val place = when {
             own != null -> " at ${shown(own)}"
             called != null -> " in ${called.javaClass.name}"
-            // A fault of the runtime itself.
+            // A bug of the runtime itself.
             else -> error.stackTrace.firstOrNull()?.let { " at ${shown(it)}" } ?: ""
         }
         kind(error) + place
     } catch (_: Throwable) {
-        // The error's class may have its own stack trace and cause, and they may fail.
+        // The class of the error may override its stack trace and cause, and they may fail.
         error.javaClass.name
     }
 
-    /** The call of user code is inside these: further out may be the test or program that runs the loop. */
+    /** Returns `true` inside the call of user code. Outer frames may be the test or program that runs the loop. */
     private fun isInside(frame: StackTraceElement): Boolean =
         CALLERS.none { frame.className == it || frame.className.startsWith("$it$") }
 
@@ -46,7 +48,7 @@ internal class Thrown(protocol: Protocol?) {
     }
 
     private companion object {
-        /** Causes that are searched for a line: a chain of causes may have no end. */
+        /** Most causes to search for a line. A chain of causes may have no end. */
         const val CAUSES = 8
         val CALLERS = listOf(Peer::class, ServerCore::class, Context::class).map { it.java.name }
         val RUNTIME = packageOf(Thrown::class.java.name)

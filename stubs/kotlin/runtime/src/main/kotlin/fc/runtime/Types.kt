@@ -8,7 +8,7 @@ public object Types {
     @JvmField
     public val BOOL: Codec<Boolean> = BoolCodec(isNumeric = false)
 
-    /** A bool that travels as 1 or 0. */
+    /** A bool that is sent as 1 or 0. */
     @JvmField
     public val BOOL_AS_NUMBER: Codec<Boolean> = BoolCodec(isNumeric = true)
 
@@ -54,11 +54,11 @@ public object Types {
     @JvmField
     public val F64: Codec<Double> = FloatCodec({ it.toDouble() }) { it }
 
-    /** A text. */
+    /** A string. */
     @JvmField
     public val STRING: Codec<String> = StringCodec
 
-    /** Bytes as base64 text. */
+    /** Bytes as a base64 string. */
     @JvmField
     public val BASE64: Codec<Bytes> = Base64Codec
 
@@ -76,7 +76,7 @@ public object Types {
         IntegerCodec(IntRangeOf(BigInteger.valueOf(min), BigInteger.valueOf(max)), make)
 }
 
-/** Reads a string whose whole text [parse] reads as a value. */
+/** Reads a string whose complete content is a value, read by [parse]. */
 private inline fun <T> JsonReader.quoted(wanted: String, parse: (JsonReader) -> T): T {
     if (peek() != '"') throw unexpected(wanted)
     val start = at
@@ -97,11 +97,11 @@ private inline fun <T> JsonReader.quoted(wanted: String, parse: (JsonReader) -> 
 
 private val HEXADECIMAL = Regex("0[xX][0-9a-fA-F]+")
 
-/** Whether a text is one number from its first to its last character. */
+/** Returns `true` if the complete text is one number. */
 private fun isNumber(text: String): Boolean = HEXADECIMAL.matches(text) ||
     JsonReader(text, Allowance.NOTHING).run { runCatching { number() }.isSuccess && at == text.length }
 
-/** The whole text as an integer if it starts with `0x`; `null` if it does not. */
+/** Returns the text as an integer if it starts with `0x`, or `null`. */
 private fun JsonReader.hexadecimal(): BigInteger? {
     if (!HEXADECIMAL.matches(text)) return null
     at = text.length

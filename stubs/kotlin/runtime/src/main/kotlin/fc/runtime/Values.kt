@@ -1,8 +1,8 @@
 package fc.runtime
 
-/** A JSON value, kept as its text: numbers have all their digits, and objects the order of their keys. */
+/** A JSON value, kept as text: numbers keep all digits, and objects the order of their keys. */
 public class Json private constructor(
-    /** The text. */
+    /** The JSON text. */
     public val text: String,
 ) {
     override fun equals(other: Any?): Boolean = other is Json && other.text == text
@@ -17,7 +17,7 @@ public class Json private constructor(
         public val NULL: Json = Json("null")
 
         /**
-         * The value that a text is.
+         * Parses a text.
          *
          * @throws BodyError if it is not JSON
          */
@@ -30,29 +30,29 @@ public class Json private constructor(
             return Json(text)
         }
 
-        /** A text that a reader has seen to be JSON. */
+        /** Wraps a text that is known to be JSON. */
         internal fun trusted(text: String): Json = Json(text)
     }
 }
 
 /**
- * The keys of a message that the spec does not have, in their order; kept unchanged and sent again. They are one text, in which
- * each question searches: many keys take no more memory than they had on the wire.
+ * The unknown keys of a message in order, kept unchanged and sent again. One string holds them all, and each query
+ * searches it, so that they take no more memory than on the wire.
  */
 public class Extra internal constructor(
     /** The keys and values as in an object, without its braces. */
     private val text: String,
 ) {
-    /** Whether there is none. */
+    /** `true` if there are no keys. */
     public val isEmpty: Boolean get() = text.isEmpty()
 
-    /** How many there are. */
+    /** The number of keys. */
     public val size: Int get() = keys.size
 
-    /** The keys, in their order; one that came twice is there twice. */
+    /** The keys in order, including duplicates. */
     public val keys: List<String> get() = ArrayList<String>().also { keys -> each { key, _ -> keys.add(key) } }
 
-    /** The last value of a key, or `null`. */
+    /** Returns the last value of a key, or `null`. */
     public operator fun get(key: String): Json? {
         var last: String? = null
         each { other, value -> if (other == key) last = value }
@@ -93,15 +93,15 @@ public class Extra internal constructor(
     }
 }
 
-/** Bytes that travel as base64 text. */
+/** Bytes that are sent as a base64 string. */
 public class Bytes private constructor(private val bytes: ByteArray) {
-    /** How many there are. */
+    /** The number of bytes. */
     public val size: Int get() = bytes.size
 
-    /** One of them. */
+    /** Returns one byte. */
     public operator fun get(index: Int): Byte = bytes[index]
 
-    /** A copy of them. */
+    /** Returns a copy of the bytes. */
     public fun toByteArray(): ByteArray = bytes.copyOf()
 
     internal fun toBase64(): String = Base64.encode(bytes)
@@ -117,7 +117,7 @@ public class Bytes private constructor(private val bytes: ByteArray) {
         @JvmField
         public val EMPTY: Bytes = Bytes(ByteArray(0))
 
-        /** A copy of these. */
+        /** Copies the bytes. */
         @JvmStatic
         public fun of(bytes: ByteArray): Bytes = Bytes(bytes.copyOf())
 
@@ -125,9 +125,7 @@ public class Bytes private constructor(private val bytes: ByteArray) {
     }
 }
 
-/**
- * Strict base64 with padding. That of the JDK is not in Android before 8.0, and takes a text without padding.
- */
+/** Strict base64 with padding. The JDK class is not in Android before 8.0, and accepts text without padding. */
 internal object Base64 {
     private const val ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
     private val VALUES = IntArray(128) { ALPHABET.indexOf(it.toChar()) }
@@ -149,7 +147,7 @@ internal object Base64 {
         return out.toString()
     }
 
-    /** The bytes, or `null` if it is not base64. */
+    /** Returns the bytes, or `null` if the text is not base64. */
     fun decode(text: String): ByteArray? {
         if (text.length % 4 != 0) return null
         val padding = if (text.endsWith("==")) 2 else if (text.endsWith("=")) 1 else 0
@@ -164,7 +162,7 @@ internal object Base64 {
             if (index % 4 != 3) continue
             for (shift in intArrayOf(16, 8, 0)) {
                 val byte = group shr shift and 0xFF
-                // What padding leaves over has to be zero, or two texts would be the same bytes.
+                // The unused bits must be zero, so that each byte array has exactly one encoding.
                 if (filled < out.size) out[filled++] = byte.toByte() else if (byte != 0) return null
             }
             group = 0

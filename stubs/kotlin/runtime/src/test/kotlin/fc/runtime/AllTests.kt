@@ -3,7 +3,7 @@ package fc.runtime
 import handlers.handlerTests
 import java.io.File
 
-/** Runs all tests; the first argument is the project's root, the others single suites. */
+/** Runs all tests. The first argument is the root of the project, the others select suites. */
 internal fun main(arguments: Array<String>) {
     val tests = Tests(File(arguments[0]))
     val suites = listOf(

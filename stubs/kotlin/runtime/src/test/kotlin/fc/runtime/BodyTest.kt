@@ -1,6 +1,6 @@
 package fc.runtime
 
-/** A message of one optional key, `value`, which keeps unknown keys: that of `bodies.json`. */
+/** A message with one optional key, `value`, and unknown keys, as in `bodies.json`. */
 internal class OneValue<T : Any> private constructor(content: Content, override val messageType: Type<T>) : Message(content) {
     val value: T? get() = get(messageType.value)
 
@@ -37,7 +37,7 @@ internal fun bodyTests(tests: Tests) {
             if (isFloat) {
                 expect(Tree.of(case["written"].text).find("value")?.text?.toDouble(), Tree.of(written).find("value")?.text?.toDouble())
             } else {
-                // Escapes of strings may be spelled otherwise.
+                // The escapes of strings may have another spelling.
                 val same = written == case["written"].text || Tree.of(written).toString() == Tree.of(case["written"].text).toString()
                 expect(true, same) { "$written instead of ${case["written"].text}:" }
             }
@@ -51,7 +51,7 @@ internal fun bodyTests(tests: Tests) {
     }
 }
 
-/** What the fields of messages can be told, and what a message itself does. */
+/** The options of fields, and the functions of a message. */
 internal fun messageTests(tests: Tests) {
     fun fault(codec: Codec<*>, json: String): String? = errorOf { OneValue.of("test", codec).fromJson("{\"value\":$json}") }
 

@@ -49,12 +49,12 @@ private fun accepted(bytes: ByteArray, case: Tree) {
     }
     case.find("data")?.let { expect(it.text, hex(frame.body)) }
     val again = Encoder(Toy, 1L shl 24, Gzip(0, 1).takeIf { frame.encoding == 1 }).prepare(frame.body).frame(frame.id)
-    // A length of 0 before compression and a status are taken and not sent.
+    // A plain length of 0 and a status are accepted, but not sent.
     if (frame.encoding == 0 && bytes[10] == 0.toByte() && frame.plainLength == frame.body.size.toLong()) expect(hex(bytes), hex(again))
     expect(hex(frame.body), hex(decode(listOf(again)).first[0].body))
 }
 
-/** What no vector asks: limits just below, at and above, searching, and bodies that lie. */
+/** Cases without vectors: limits just below, at and above, searches, and false lengths. */
 internal fun decoderTests(tests: Tests) {
     fun error(frame: ByteArray, limits: Limits = Toy.defaults.limits): String? = errorOf {
         val decoder = Decoder(Toy, limits)
@@ -123,7 +123,7 @@ internal fun decoderTests(tests: Tests) {
     }
 }
 
-/** The names of errors are those of all languages. */
+/** All languages share the names of errors. */
 internal fun nameTests(tests: Tests) {
     val listed = Tree.of(File(tests.root, "conformance/errors.json"))["errors"].items
     for ((where, own) in listOf(
@@ -133,7 +133,7 @@ internal fun nameTests(tests: Tests) {
     )) {
         val here = listed.filter { it["where"].text == where }
         tests.case("the names of errors of a $where") { expect(here.map { it["name"].text }.sorted(), own.sorted()) }
-        // A limit of one's own is not asked of others.
+        // Other implementations need not have a limit that is specific to this one.
         for (error in here.filter { it.find("own_limit") == null }) {
             val name = error["name"].text
             tests.case("the error $name", "${where}_errors") { expect(true, name in own) }

@@ -2,7 +2,7 @@ package fc.runtime
 
 import java.nio.charset.StandardCharsets
 
-/** The rules that concern JSON alone, and the reader's own limits. */
+/** The rules of JSON alone, and the limits of the reader. */
 internal fun jsonTests(tests: Tests) {
     fun check(name: String, expected: String?, found: String?) = tests.case(name) { expect(expected, found) }
     check("100,000 brackets", "too_deep", errorOf { Json.of("[".repeat(100_000)) })

@@ -9,7 +9,7 @@ import kotlinx.coroutines.Dispatchers
 import kotlinx.coroutines.SupervisorJob
 import kotlinx.coroutines.launch
 
-/** A robot with an app at its other end, and a clock that the test holds. Its motions wait for [gates]. */
+/** A robot with an app at its other end, and a clock of the test. Its motions wait for [gates]. */
 private class LimitedRobot(config: ServerConfig) {
     val loop = TestLoop()
     val wire = TestWire(loop)
@@ -59,7 +59,7 @@ private class LimitedApp(config: ClientConfig) {
         loop.settle()
     }
 
-    /** Sends a report; whether it is acknowledged. */
+    /** Sends a report. Returns `true` if it is acknowledged. */
     fun report(id: Long, body: String = "{\"metres\":1}", code: Int = 300): Boolean {
         wire.send(FrameId(false, Toy.reportKind, code, id), body)
         loop.settle()
@@ -67,7 +67,7 @@ private class LimitedApp(config: ClientConfig) {
     }
 }
 
-/** Limits just below, at and above, each with what is said to come of it. */
+/** Limits just below, at and above, with the log lines of each. */
 internal fun limitTests(tests: Tests) {
     val limits = Toy.defaults.limits
     tests.case("what is ready at the same time goes out with one write") {
@@ -80,7 +80,7 @@ internal fun limitTests(tests: Tests) {
         answer(0..2)
         expect(1, robot.wire.link.writes)
         expect(listOf(1L, 2L, 3L), robot.wire.frames().map { it.id.id })
-        // An app that takes a part of them, and the rest with what has come to it.
+        // The app takes a part of the responses, and the rest after its requests.
         robot.wire.link.room = 100
         answer(3..5)
         answer(6..8)
@@ -194,7 +194,7 @@ internal fun limitTests(tests: Tests) {
     tests.case("a robot whose frame swallows answers") {
         val app = LimitedApp(ClientConfig().stallTimeout(10, SECONDS))
         val frame = TestWire.bytes(FrameId(false, 3, 300, 1), ByteArray(5_000_000))
-        // Progress all the time, and less than has to come: 16 KiB a second beside the ten seconds.
+        // Steady progress below the least rate: 16 KiB a second after the ten seconds.
         for (second in 0 until 10) {
             app.wire.link.give(frame.copyOfRange(second * 1000, second * 1000 + 1000))
             app.loop.settle()
@@ -217,7 +217,7 @@ internal fun limitTests(tests: Tests) {
     paceTests(tests)
 }
 
-/** What useless work costs, who may connect, and what is said of all that. */
+/** The cost of useless work, the allowed networks, and their log lines. */
 private fun paceTests(tests: Tests) {
     tests.case("frames that cannot be used, up to those that are free") {
         val robot = LimitedRobot(ServerConfig())

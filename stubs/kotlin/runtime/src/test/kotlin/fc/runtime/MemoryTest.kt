@@ -28,7 +28,7 @@ private const val LISTS = 400
 /** Bytes that any connection may hold. */
 private const val NEEDED = 128 * KIB
 
-/** A robot on a clock of the test, at which many apps connect. Requests with a text wait for their [gates]. */
+/** A robot on a clock of the test, with many apps. Requests with a text wait for their [gates]. */
 private class CrowdedRobot(memory: Int, config: ServerConfig = ServerConfig(), reply: String = "") {
     val loop = TestLoop()
     val gates = ArrayList<CompletableDeferred<Unit>>()
@@ -81,7 +81,7 @@ private fun request(text: String, id: Long = 1, gzip: Gzip? = null): ByteArray =
 private fun stream(length: Int, id: Long, gzip: Gzip? = null): ByteArray =
     Encoder(Toy, 1L shl 30, gzip).prepare(ByteArray(length)).frame(FrameId(false, Toy.streamKind, 5, id))
 
-/** Bounds on the bytes that apps make a robot hold. */
+/** Limits of the bytes that apps make a robot hold. */
 internal fun memoryTests(tests: Tests) {
     tests.case("unfinished frames: the connection that holds most is closed") {
         val robot = CrowdedRobot(8 * MIB)
@@ -131,7 +131,7 @@ internal fun memoryTests(tests: Tests) {
             robot.loop.advance(1000)
             expect(true, robot.server.memory <= 8 * MIB) { "${robot.server.memory}:" }
         }
-        // Those that were not closed have been answered.
+        // The other apps have got their responses.
         expect(24, apps.sumOf { it.frames().size } + robot.evicted.toInt())
         expect(true, at >= 3) { "$at:" }
     }
@@ -146,7 +146,7 @@ internal fun memoryTests(tests: Tests) {
         robot.loop.settle()
         expect(listOf<Any>(2L, true), listOf(robot.server.counters.handlersAbandoned, robot.server.memory >= 3_996_000))
         expect(true, robot.serves(modest))
-        // Another long request waits for the end of one.
+        // Another long request waits for the end of the first.
         val other = robot.app()
         other.link.give(request("x".repeat(999_000)))
         robot.loop.settle()
@@ -262,7 +262,7 @@ private fun streamMemoryTests(tests: Tests) {
         for (id in 2L..4L) bomb.link.give(stream(4 * MIB, id, Gzip(0, 9)))
         repeat(3) { robot.loop.advance(1000) }
         expect(4L, robot.server.counters.streamFramesIn)
-        // The next frame needs more than is free.
+        // The next frame needs more than the free memory.
         val other = robot.app()
         other.link.give(request("x".repeat(4_000_000)).copyOf(3_900_000))
         robot.loop.settle()
@@ -286,7 +286,7 @@ private fun streamMemoryTests(tests: Tests) {
     }
 }
 
-/** Inflating frames from many connections, at a robot without room for them. */
+/** Decompresses frames from many connections, at a robot without memory for them. */
 private suspend fun smallHeap() {
     val java = File(System.getProperty("java.home"), "bin/java").path
     val program = ProcessBuilder(java, "-Xmx96m", "-cp", System.getProperty("java.class.path"), "fc.runtime.SmallHeap")
@@ -295,7 +295,7 @@ private suspend fun smallHeap() {
         val said = BufferedReader(InputStreamReader(program.inputStream))
         val port = said.readLine().toInt()
         val bodies = listOf("\"y\":\"${"z".repeat(5_900_000)}\"", "\"a\":1,".repeat(950_000) + "\"b\":1", "\"b\":[${"1,".repeat(900_000)}1]")
-        // Text that hardly shrinks: what inflates too much is refused at once.
+        // Text that hardly compresses: a large ratio is refused at once.
         val noise = hex(ByteArray(40_000).also { Random(1).nextBytes(it) })
         val frames = bodies.mapIndexed { id, keys ->
             val body = "{\"text\":\"hold\",\"noise\":\"$noise\",$keys}".toByteArray()
@@ -303,7 +303,7 @@ private suspend fun smallHeap() {
         }
         val sockets = List(12) { Socket("127.0.0.1", port) }
         val senders = sockets.mapIndexed { index, socket ->
-            // The robot closes some of them, and does not read others to the end.
+            // The robot closes some connections, and does not read others to the end.
             kotlin.concurrent.thread(isDaemon = true) { runCatching { repeat(4) { socket.getOutputStream().write(frames[index % 3]) } } }
         }
         withTimeout(30_000) {
@@ -328,7 +328,7 @@ internal object SmallHeap {
         val lines = ArrayList<String>()
         val held = Channel<CompletableDeferred<Unit>>(Channel.UNLIMITED)
         val service = Service().on(Toy.ECHO) { _, request ->
-            // Each echo ends the handler that has held its request for longest.
+            // Each echo ends the oldest waiting handler.
             if (request.text == "echo") held.tryReceive().getOrNull()?.complete(Unit)
             if (request.text == "hold") CompletableDeferred<Unit>().also { held.send(it) }.await()
             EchoReply.of(request.text)

@@ -20,7 +20,7 @@ import kotlinx.coroutines.withTimeout
 
 private const val LOCAL = "127.0.0.1"
 
-/** A robot that echoes, and waits with motions for [gate]. */
+/** A robot that echoes. Its motions wait for [gate]. */
 private class TestRobot(config: ServerConfig = ServerConfig(), val gate: CompletableDeferred<Unit>? = null) {
     val begun = CompletableDeferred<Context>()
     val ended = CompletableDeferred<Unit>()
@@ -63,7 +63,7 @@ private suspend fun callError(body: suspend () -> Unit): String? = try {
     error.name
 }
 
-/** Over real sockets. */
+/** Tests over real sockets. */
 internal fun netTests(tests: Tests) {
     tests.net("calls, refusals and failures") {
         val robot = TestRobot()
@@ -105,10 +105,10 @@ internal fun netTests(tests: Tests) {
     tests.net("reports, and following a command to its end") {
         val robot = TestRobot()
         val app = robot.app()
-        // Once it has a response, the robot knows the app.
+        // After the first response, the robot knows the app.
         app.call(Toy.ECHO, Echo.of("hello"))
         expect(AckOutcome.TIMED_OUT, robot.server.push(Audience.ALL, Report("moved", 300, Moved, Empty).ack(AckPolicy(1, 0)), Moved.of(1))[0].outcome)
-        // It is sent once, and nobody is there to take it: what is answered behind it has been read after it.
+        // The report is sent once and has no receiver. The later response shows that it has been read.
         app.call(Toy.ECHO, Echo.of("behind it"))
         expect(1L, app.counters.reportsRefused)
         val reports = app.reports()
@@ -174,7 +174,7 @@ internal fun netTests(tests: Tests) {
             val socket = Socket(LOCAL, robot.server.commandAddress.port)
             socket.getOutputStream().write(call)
             val context = robot.begun.await()
-            // Half closed, an app would still wait: this one breaks the connection.
+            // After closing only one half, an app would still wait. This one breaks the connection.
             socket.setSoLinger(true, 0)
             socket.close()
             context.abandoned()
@@ -206,7 +206,7 @@ internal fun netTests(tests: Tests) {
             callers.awaitAll()
         }
         expect(true, ends.all { it == "lost" || it == "closed" }) { "$ends:" }
-        // All that was read was answered; none of it was done and not said.
+        // All read requests got responses, and all handled ones are counted.
         expect(answered.get(), robot.server.counters.callsAnswered)
         expect(0, app.inFlight)
         app.close()
@@ -218,7 +218,7 @@ internal fun netTests(tests: Tests) {
             val callers = (0 until 8).map {
                 async(Dispatchers.Default) {
                     List(100) { turn ->
-                        // Others are in the middle of a call then.
+                        // Other calls are in flight at this moment.
                         if (turn % 20 == 10) robot.server.core.loop.execute { robot.server.core.breakAll() }
                         callError { app.call(Toy.ECHO, Echo.of("again")) }
                     }
@@ -310,7 +310,7 @@ internal fun netTests(tests: Tests) {
     exceptionTests(tests)
 }
 
-/** Unexpected exceptions: no thread of the runtime ends with one. */
+/** Unexpected exceptions do not end a thread of the runtime. */
 private fun exceptionTests(tests: Tests) {
     fun Tests.surviving(name: String, body: suspend (MutableList<String>) -> Unit) = net(name) {
         val before = Thread.getDefaultUncaughtExceptionHandler()
@@ -423,7 +423,7 @@ private fun exceptionTests(tests: Tests) {
     }
 }
 
-/** A link that cannot be read. */
+/** A link that fails to read. */
 private class Failing(private val link: Link) : Link by link {
     override fun read(into: ByteArray): Int = throw IllegalStateException("secret")
 }
@@ -462,7 +462,7 @@ private fun dataTests(tests: Tests) {
         data.send(1, 1, byteArrayOf(1))
         val connection = robot.server.connections().keys.first()
         val error = runCatching { robot.server.sendStream(Audience.one(connection), 1, 1, byteArrayOf(1)) }.exceptionOrNull()
-        // Its frame is on its way; until it has come, there may be no data connection at all.
+        // The frame is in transit. Before it arrives, there may be no data connection.
         expect(true, (error as PushError).name in listOf("ambiguous", "no_connection"))
         listOf(one, other).forEach { it.close() }
         robot.server.close()
@@ -488,7 +488,7 @@ private fun dataTests(tests: Tests) {
     }
 }
 
-/** Peers that close, send garbage, stop in the middle, or send what no parser should see. */
+/** Peers that close, send garbage, stop in the middle, or send data that no parser should see. */
 private fun hostileTests(tests: Tests) {
     fun robot(body: suspend (Socket) -> Unit): ServerSocket {
         val listener = ServerSocket(0, 5, java.net.InetAddress.getByName(LOCAL))

@@ -2,7 +2,7 @@ package fc.runtime
 
 import java.io.File
 
-/** Patterns match what `conformance/patterns.json` says, as in all languages. */
+/** Patterns match as specified in `conformance/patterns.json`, in all languages. */
 internal fun patternTests(tests: Tests) {
     for (pattern in Tree.of(File(tests.root, "conformance/patterns.json")).items) {
         val portable = pattern.find("portable")?.text ?: continue

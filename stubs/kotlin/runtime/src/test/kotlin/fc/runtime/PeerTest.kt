@@ -10,7 +10,7 @@ import kotlinx.coroutines.Job
 import kotlinx.coroutines.SupervisorJob
 import kotlinx.coroutines.launch
 
-/** The scripts of the level `peer`: against a whole app, and against a whole robot. */
+/** Runs the scripts of level `peer` against a whole app and a whole robot. */
 internal fun peerTests(tests: Tests) {
     for (file in tests.files("conformance/sessions")) {
         val contents = Tree.of(file)
@@ -27,7 +27,7 @@ internal fun peerTests(tests: Tests) {
 
 private val OUTCOMES = listOf("success", "protocol", "timeout", "invalid", "expired")
 
-/** What the runs of both sides have in common: frames at the other end, and a clock. */
+/** The common part of both sides: frames at the other end, and a clock. */
 private abstract class PeerRun {
     class Sent(val name: String, val code: Int, var frame: FrameId? = null)
 
@@ -56,7 +56,7 @@ private abstract class PeerRun {
             "advance" -> loop.advance(said.long)
             else -> act(verb, said)
         }
-        // The peer may go on when it sees that what it has closed is closed at the other end too.
+        // The peer may continue when the other end has closed, too.
         repeat(2) {
             loop.settle()
             drain()
@@ -69,7 +69,7 @@ private abstract class PeerRun {
         expect(then["in_flight"].int, inFlight) { "step ${index + 1} in flight:" }
     }
 
-    /** An event as it is written in `got`; where no id is said, that which was sent. */
+    /** Returns an event in the format of `got`. Without an id, it takes the sent one. */
     private fun expected(event: Tree, found: List<String>): String {
         val (kind, said) = event.keys.entries.firstOrNull() ?: return event.text
         return when (kind) {

@@ -1,6 +1,6 @@
 package fc.runtime
 
-/** The scripts of the level `session`. */
+/** Runs the scripts of level `session`. */
 internal fun sessionTests(tests: Tests) {
     for (file in tests.files("conformance/sessions")) {
         val contents = Tree.of(file)
@@ -13,7 +13,7 @@ internal fun sessionTests(tests: Tests) {
     }
 }
 
-/** [Toy] with so few bits for ids that they wrap around soon. */
+/** [Toy] with short ids that wrap around soon. */
 private class ShortIds(bytes: Int) : Protocol() {
     override val name get() = "short"
     override val host get() = Toy.host
@@ -39,7 +39,7 @@ private class ShortIds(bytes: Int) : Protocol() {
     override val reports get() = Toy.reports
 }
 
-/** What no script asks: ids of a single byte. */
+/** A case without a script: ids of a single byte. */
 internal fun idTests(tests: Tests) {
     tests.case("an id in flight is passed over when ids wrap around") {
         val session = Session<String>(ShortIds(1), Toy.defaults.limits, AckPolicy(1000, 0), 0)
@@ -87,7 +87,7 @@ private class SessionRun(given: Tree) {
         }
     }
 
-    /** An expected event, with the id of its request. */
+    /** Returns an expected event with the id of its request. */
     private fun filled(event: Tree): String {
         val (kind, said) = event.keys.entries.firstOrNull() ?: return event.text
         if (kind != "sends" && kind != "again") return "$kind ${said.text}"
@@ -130,7 +130,7 @@ private class SessionRun(given: Tree) {
 
     private fun endedName(name: String) = requests[name] in ended
 
-    /** A request ends once. */
+    /** Checks that a request ends only once. */
     private fun over(name: String): String = name.also { expect(true, ended.add(requests.getValue(it))) { "$name ends again:" } }
 
     private fun receive(said: Tree, round: Int): List<String> {

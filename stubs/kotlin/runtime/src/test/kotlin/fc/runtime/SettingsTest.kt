@@ -9,7 +9,7 @@ import kotlinx.coroutines.Dispatchers
 import kotlinx.coroutines.SupervisorJob
 import kotlinx.coroutines.launch
 
-/** The message of the `IllegalArgumentException` that comes of it; `null` if none does. */
+/** Returns the message of the `IllegalArgumentException`, or `null` if there is none. */
 private inline fun refused(body: () -> Unit): String? = try {
     body()
     null
@@ -19,7 +19,7 @@ private inline fun refused(body: () -> Unit): String? = try {
     error.message
 }
 
-/** A method that sets something, with wrong and right values for it. */
+/** A setter, with wrong and right values. */
 private class Setting(val method: Method, val name: String, val wrong: List<Array<Any>>, val right: List<Array<Any>>)
 
 private fun pairs(times: List<Long>, units: List<TimeUnit>): List<Array<Any>> = times.flatMap { time -> units.map { arrayOf(time, it) } }
@@ -29,7 +29,7 @@ private val LEAST_ONE = setOf(
     "jsonValues", "jsonListBytes",
 )
 
-/** Every public method that takes a number, a time, a name or an address. A new one without a check fails. */
+/** Every public method that takes a number, a time, a name or an address. A new one without a check fails the test. */
 private fun settings(type: Class<*>): List<Setting> = type.methods
     .filter { Modifier.isPublic(it.modifiers) && it.returnType == type && it.parameterTypes.isNotEmpty() }
     .mapNotNull { method ->
@@ -54,7 +54,7 @@ private fun settings(type: Class<*>): List<Setting> = type.methods
         }
     }
 
-/** Wrong settings, call options, codes and ids: each is refused where it is given. */
+/** Wrong settings, call options, codes and ids are refused by the call that sets them. */
 internal fun settingsTests(tests: Tests) {
     val right = listOf(Backoff(), ClientConfig(), ServerConfig(), CallOptions(), Toy.defaults.limits)
     for (one in right) {

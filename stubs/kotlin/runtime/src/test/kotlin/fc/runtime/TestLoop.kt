@@ -4,7 +4,7 @@ import java.io.ByteArrayOutputStream
 import java.io.IOException
 import java.util.PriorityQueue
 
-/** A loop whose clock the test holds, and which goes on only when it is told to. */
+/** A loop with a clock of the test. It runs only on request. */
 internal class TestLoop : Loop {
     private class Alarm(val at: Long, val order: Int, var task: (() -> Unit)?) : Timer, Comparable<Alarm> {
         override fun compareTo(other: Alarm): Int = compareValuesBy(this, other, { it.at }, { it.order })
@@ -26,7 +26,7 @@ internal class TestLoop : Loop {
 
     override fun schedule(at: Long, task: () -> Unit): Timer = Alarm(at, order++, task).also { timers.add(it) }
 
-    /** Does all that can be done without more time. */
+    /** Runs everything that is possible without more time. */
     fun settle() {
         var turns = 0
         while (true) {
@@ -49,34 +49,34 @@ internal class TestLoop : Loop {
     }
 }
 
-/** The end of a connection that a peer under test has; the test is the other end. */
+/** The link of a peer under test. The test is the other end. */
 internal class TestLink(private val loop: TestLoop) : Link {
     private var incoming = ArrayDeque<ByteArray>()
     private var ready: (() -> Unit)? = null
     private var wantsRead = false
     private var wantsWrite = false
 
-    /** What the peer has sent. */
+    /** The bytes from the peer. */
     val outgoing = ByteArrayOutputStream()
 
-    /** How often it has sent something. */
+    /** Number of writes of the peer. */
     var writes = 0
         private set
 
-    /** The test has gone. */
+    /** `true` once the test has disconnected. */
     private var isLost = false
 
-    /** The test sends nothing more. */
+    /** `true` once the test has closed its half. */
     private var isEnded = false
 
-    /** How many bytes the test takes. */
+    /** Number of bytes that the test takes. */
     var room = Int.MAX_VALUE
         set(value) {
             field = value
             call()
         }
 
-    /** The peer sends nothing more, or has closed. */
+    /** `true` once the peer has closed its half or the connection. */
     var hasGone = false
         private set
     var isClosed = false
@@ -93,7 +93,7 @@ internal class TestLink(private val loop: TestLoop) : Link {
         call()
     }
 
-    /** Says goodbye, and reads on. */
+    /** Closes the half of the test, and reads on. */
     fun end() {
         isEnded = true
         call()
@@ -146,14 +146,14 @@ internal class TestLink(private val loop: TestLoop) : Link {
     }
 }
 
-/** Frames at the test's end of a connection. */
+/** Frames at the end of the test. */
 internal class TestWire(loop: TestLoop) {
     val link = TestLink(loop)
     private val decoder = Decoder(Toy, Toy.defaults.limits)
 
     fun send(frame: FrameId, body: String) = link.give(bytes(frame, body.toByteArray()))
 
-    /** What the peer has sent since this was last asked. */
+    /** Returns the frames from the peer since the last call. */
     fun frames(): List<Frame> {
         val bytes = link.outgoing.toByteArray()
         link.outgoing.reset()

@@ -4,16 +4,18 @@ import java.io.File
 import java.util.TreeMap
 import kotlin.system.exitProcess
 
-/** What has been tested, and what has failed. */
+/** Counts tests and failures. */
 internal class Tests(
-    /** The project's root, which has the vectors and scripts of all languages. */
+    /** The root of the project, with the vectors and scripts of all languages. */
     val root: File,
 ) {
     private var cases = 0
     private var failed = 0
     private val held = TreeMap<String, Int>()
 
-    /** A case: `body` throws where something is not as it should be. `kind` is one of `conformance/README.md`, if all languages have the case. */
+    /**
+     * Runs a case, which fails if [body] throws. [kind] is from `conformance/README.md` if all languages have the case.
+     */
     inline fun case(name: String, kind: String? = null, body: () -> Unit) {
         cases++
         try {
@@ -26,7 +28,7 @@ internal class Tests(
         }
     }
 
-    /** Runs a suite, and demands that it has so many cases at least. */
+    /** Runs a suite. It fails with fewer than [atLeast] cases. */
     fun suite(name: String, atLeast: Int, run: (Tests) -> Unit) {
         val before = cases
         run(this)
@@ -38,7 +40,7 @@ internal class Tests(
     fun files(folder: String): List<File> =
         File(root, folder).listFiles { file -> file.extension == "json" }.orEmpty().sortedBy { it.name }
 
-    /** Ends, and tells of each kind how many cases have held: a line `KIND NUMBER` behind what is in the file that `FC_CONFORMANCE` names. */
+    /** Ends the run. Appends a line `KIND NUMBER` for each kind to the file in `FC_CONFORMANCE`, if set. */
     fun end(): Nothing {
         System.getenv("FC_CONFORMANCE")?.let { path ->
             File(path).appendText(held.entries.joinToString("") { (kind, number) -> "$kind $number\n" })
@@ -48,14 +50,14 @@ internal class Tests(
     }
 }
 
-/** A demand that does not hold. */
+/** A failed expectation. */
 internal class Wrong(message: String) : Exception(message)
 
 internal fun expect(expected: Any?, found: Any?, what: () -> String = { "" }) {
     if (expected != found) throw Wrong("${what()} expected $expected, found $found")
 }
 
-/** The name of the error that comes of it; `null` if none does. */
+/** Returns the name of the error, or `null` if there is none. */
 internal inline fun errorOf(body: () -> Unit): String? = try {
     body()
     null
@@ -69,9 +71,9 @@ internal fun hex(text: String): ByteArray = ByteArray(text.length / 2) { text.su
 
 internal fun hex(bytes: ByteArray): String = bytes.joinToString("") { String.format("%02x", it) }
 
-/** A JSON value of a test's own files. */
+/** A JSON value from a test file. */
 internal class Tree(
-    /** The text of a string, and that of a number or word. */
+    /** The text of a string, number or word. */
     val text: String,
     val items: List<Tree> = emptyList(),
     val keys: Map<String, Tree> = emptyMap(),
@@ -84,7 +86,7 @@ internal class Tree(
     val int: Int get() = text.toInt()
     val long: Long get() = text.toLong()
 
-    /** Equal whatever the order of keys and the spelling of numbers. */
+    /** Ignores the order of keys and the spelling of numbers. */
     override fun equals(other: Any?): Boolean =
         other is Tree && kind == other.kind && items == other.items && keys == other.keys && sameText(other)
 

@@ -42,7 +42,7 @@ internal object Toy : Protocol() {
     val MOVED = Report("moved", 300, Moved, Empty).state { Stage(it.metres) }
     val TICK = Report("tick", 301, Tick, Empty).every(1000)
 
-    /** How far the journey has come: 0 begins it, 3 ends it, 9 has failed, and each number follows the one before. */
+    /** The progress of the journey: 0 starts it, 3 ends it, 9 is a failure. Each number follows the previous one. */
     class Stage(private val metres: Int) : State {
         override val isFinal get() = metres == 3
         override val isError get() = metres == 9
