@@ -23,6 +23,7 @@ mod emit_typescript;
 mod emit_vectors;
 mod emitters;
 mod error_names;
+mod features;
 #[allow(dead_code, reason = "a part of it is used here")]
 #[path = "../../../fc-spec/tests/it/good_spec.rs"]
 mod good_spec;

@@ -111,7 +111,7 @@ async fn an_invalid_request_is_not_sent() {
 async fn raw_calls_and_raw_handlers() {
     let service = |request: Request<'_, Toy>| {
         request.handle_raw(|context, request| async move {
-            assert!(context.time_ms.is_some());
+            assert!(context.time_ms.is_some() && context.peer.ip().is_loopback());
             let text = request.text.as_str();
             match request.code {
                 1 => Ok(RawAnswer(

@@ -66,14 +66,18 @@ class Blocking(unittest.TestCase):
 
     def test_after_its_end_nothing_is_sent_and_who_waits_is_told(self) -> None:
         client = sync.Client(self.config)
-        with ThreadPoolExecutor(2) as pool:
+        with ThreadPoolExecutor(3) as pool:
             calling = pool.submit(client.dock, DockRequest.example())
             reports = client.reports()
             receiving = pool.submit(reports.recv)
+            with self.assertRaises(TimeoutError):
+                client.closed(0)
+            ending = pool.submit(client.closed, PATIENCE)
             self.assertTrue(docking.wait(PATIENCE))
             client.close()
             self.assertIsInstance(calling.exception(PATIENCE), rt.LostError)
             self.assertIsNone(receiving.result(PATIENCE))
+            self.assertEqual(ending.result(PATIENCE).kind, rt.LossKind.HERE)
         with self.assertRaises(rt.ClosedError):
             client.get_battery()
         client.close()

@@ -53,6 +53,18 @@ class Frames(unittest.TestCase):
         self.assertGreater(accepted, 300)
         self.assertGreater(rejected, 300)
 
+    def test_garbage_between_frames_is_skipped_with_resync(self) -> None:
+        frame = rt.Encoder(PROTOCOL).encode(rt.FrameId(False, 1, 100, 7), b"{}")
+        decoder = rt.Decoder(PROTOCOL, resync=True)
+        decoder.push(b"garbage" + frame + b"more" + frame)
+        found: list[rt.Frame | None] = []
+        while len(found) < 2:
+            try:
+                found.append(decoder.next())
+            except rt.FrameError as error:
+                self.assertEqual(error.name, "bad_head")
+        self.assertEqual([frame and frame.id.id for frame in found], [7, 7])
+
 
 if __name__ == "__main__":
     unittest.main()

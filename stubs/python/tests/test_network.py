@@ -69,6 +69,23 @@ class Network(AsyncCase):
         self.assertEqual(answer, Say(text="hi", extra=extra))
         many = await asyncio.gather(*(client.call(READ, Say(text=str(n))) for n in range(200)))
         self.assertEqual([one.text for one in many], [str(n) for n in range(200)])
+        self.assertEqual(client.counters.bytes_in, robot.counters.bytes_out)
+        self.assertEqual(client.counters.bytes_out, robot.counters.bytes_in)
+        await robot.shutdown(0)
+
+    async def test_a_handler_knows_address_and_time_of_the_request(self) -> None:
+        contexts: list[rt.Context] = []
+
+        async def handler(context: rt.Context, request: Say) -> Say:
+            contexts.append(context)
+            return request
+
+        robot = await self.robot({100: handler})
+        client = await self.client()
+        await client.call(READ, Say(text="hi"))
+        (context,) = contexts
+        self.assertEqual(context.address, "127.0.0.1")
+        self.assertIsInstance(context.time_ms, int)
         await robot.shutdown(0)
 
     async def test_what_is_wrong_has_its_name(self) -> None:

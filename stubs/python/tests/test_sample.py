@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import unittest
+from typing import Any
 
 import fc_runtime as rt
 import sample
@@ -111,6 +112,26 @@ class Sample(AsyncCase):
             await reporter.docking(report)
         await running
         await server.shutdown(0)
+
+    def test_misspelt_handlers_are_errors_and_helpers_are_not(self) -> None:
+        async def handler(self: Any, context: rt.Context, request: Any) -> None: ...
+
+        async def helper(self: Any) -> None: ...
+
+        def robot(**methods: Any) -> None:
+            type("Misspelt", (sample.PartialRobot,), methods)
+
+        for name, right in (
+            ("get_batery", "get_battery"),
+            ("getBattery", "get_battery"),
+            ("docks", "dock"),
+            ("pass_throgh", "pass_through"),
+            ("unknwon", "unknown"),
+        ):
+            with self.subTest(name), self.assertRaisesRegex(TypeError, f"no handler `{right}`, and `{name}` is none"):
+                robot(**{name: handler})
+        robot(get_batery=helper, _get_batery=handler, charge=handler)
+        robot(dock=handler, docks=handler)
 
     def test_an_error_says_what_is_wanted_and_not_what_was_there(self) -> None:
         for text in ('{"level":1234,"phase":0}', '{"level":123.4,"phase":0}', '{"level":"1234","phase":0}'):

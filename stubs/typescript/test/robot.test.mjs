@@ -35,7 +35,7 @@ test('requests are answered at once or later, refused by name, and a thrown erro
   }
   const { server, join } = robot(methods)
   const raw = join()
-  await raw.send(ask(1), { text: 'a' })
+  await raw.send(ask(1), { text: 'a', time: 5 })
   await raw.send(ask(2, 200), { metres: 1 })
   await raw.send(ask(3, 201), { metres: 1 })
   await settle()
@@ -43,6 +43,7 @@ test('requests are answered at once or later, refused by name, and a thrown erro
   assert.deepEqual([refused.id.id, bodyOf(refused).result, bodyOf(refused).said], [2, 10, 'blocked'])
   assert.deepEqual([bodyOf(failed).result, bodyOf(failed).said], [1, 'protocol: the handler threw'])
   assert.deepEqual([open[0].context.code, open[0].context.id, open[0].context.signal.aborted], [100, 1, false])
+  assert.deepEqual([open[0].context.peer, open[0].context.time], ['127.0.0.1', 5])
   open[0].resolve({ text: 'b' })
   await settle()
   assert.deepEqual(bodyOf(raw.take()[0]).text, 'b')

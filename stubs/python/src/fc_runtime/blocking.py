@@ -133,6 +133,10 @@ class SyncClient(SyncCalls, Generic[A]):
         """Counters since the client was made."""
         return self.connection.counters
 
+    def closed(self, timeout: float | None = None) -> Loss:
+        """Wait until the connection has ended for good, and return the cause. Raises `TimeoutError`."""
+        return self.wait(_within(self.connection.closed(), timeout))
+
     def reports(self) -> SyncReports[A]:
         """All reports received from now on. Without a receiver, reports are not acknowledged."""
         return SyncReports(self)

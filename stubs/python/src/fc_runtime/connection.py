@@ -188,6 +188,7 @@ class Connection:
             self._arrive,
             self._arrive_broken,
             self._ended,
+            on_bytes=self.counters.count_bytes,
         )
         self._lost = self._loop.create_future()
         loss = await dialled(self._dial, link, self.config.connect_timeout)

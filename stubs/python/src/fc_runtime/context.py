@@ -12,9 +12,11 @@ if TYPE_CHECKING:
 class Context:
     """The request that a handler works on, with the state of waiting for its result."""
 
-    __slots__ = ("_abandoned", "_waiting", "address", "code", "connection", "effect", "id")
+    __slots__ = ("_abandoned", "_waiting", "address", "code", "connection", "effect", "id", "time_ms")
 
-    def __init__(self, connection: int, address: str, code: int, message_id: int, effect: Effect) -> None:
+    def __init__(
+        self, connection: int, address: str, code: int, message_id: int, effect: Effect, time_ms: int | None = None
+    ) -> None:
         """Creates the context of a request."""
         self.connection: Final = connection
         """The app's connection."""
@@ -26,6 +28,8 @@ class Context:
         """Message id."""
         self.effect: Final = effect
         """Effect of the command; `UNKNOWN` for undeclared codes."""
+        self.time_ms: Final = time_ms
+        """Time of the request in milliseconds since 1970-01-01T00:00:00Z, if its type is known and it has one."""
         self._abandoned = False
         self._waiting: list[asyncio.Future[None]] | None = None
 

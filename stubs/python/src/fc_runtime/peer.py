@@ -180,7 +180,7 @@ class Peer:
             server.counters.abandoned_reached += 1
             self._answer(frame.id, because(results.protocol, "too many handlers are still at work"))
             return
-        context = Context(self.connection, self.address, code, frame.id.id, effect)
+        context = Context(self.connection, self.address, code, frame.id.id, effect, at)
         due = server.loop.time() + server.handler_timeout
         work = _Work(frame.id, context, command, handler, len(frame.data), due)
         self._works[work] = None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, TypeVar
 
 from .operations import Effect
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
 RawHandler: TypeAlias = "Callable[[Context, RawRequest], Awaitable[Json]]"
 """Handles a request of any code, and returns an object with the response's keys."""
 
+HANDLER_PARAMETERS: Final = 3
+"""Robot, context and request."""
+
 F = TypeVar("F", bound="Callable[..., Any]")
 
 Handler: TypeAlias = "Callable[[Context, Any], Awaitable[Message]]"
@@ -32,11 +37,46 @@ def left_out(method: F) -> F:
     return method
 
 
+def _is_missing(method: Any) -> bool:
+    return method is None or hasattr(method, "__left_out__") or hasattr(method, "__isabstractmethod__")
+
+
+def _is_handler(method: Any) -> bool:
+    """Return `True` for a coroutine function with the parameters of a handler."""
+    return inspect.iscoroutinefunction(method) and len(inspect.signature(method).parameters) == HANDLER_PARAMETERS
+
+
+def _plain(name: str) -> str:
+    """Return the letters of a name, so that `getRobotSn` is close to `get_robot_sn`."""
+    return name.replace("_", "").lower()
+
+
 class Robot:
     """A robot. Its subclasses have one method per command."""
 
     protocol: ClassVar[Protocol]
     """The protocol that it speaks."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Raise `TypeError` for a misspelt handler.
+
+        That is a public coroutine method with two parameters. Its name is close to a handler that the class lacks.
+        """
+        super().__init_subclass__(**options)
+        protocol: Protocol | None = getattr(cls, "protocol", None)
+        if protocol is None:
+            return
+        handlers = {command.method_name for command in protocol.commands}
+        handlers |= {"unknown", *(one.method for one in protocol.pass_through)}
+        missing = {_plain(name): name for name in handlers if _is_missing(getattr(cls, name, None))}
+        for name in dir(cls):
+            if name in handlers or name.startswith("_") or not _is_handler(inspect.getattr_static(cls, name)):
+                continue
+            for near in get_close_matches(_plain(name), missing, n=1, cutoff=0.8):
+                raise TypeError(
+                    f"{cls.__name__} has no handler `{missing[near]}`, and `{name}` is none: "
+                    "rename it, or begin the name of a helper with `_`"
+                )
 
     def handlers_by_code(self) -> Mapping[int, Handler]:
         """Returns the handler of each code. A command without a handler is refused as not implemented."""

@@ -45,6 +45,10 @@ ConnectionState: TypeAlias = "Connected | Connecting | Closed"
 class ClientCounters:
     """Counters since the client was made."""
 
+    bytes_in: int = 0
+    """Bytes received."""
+    bytes_out: int = 0
+    """Bytes handed to the connection to be sent."""
     answers: int = 0
     """Responses to calls in flight."""
     late_answers: int = 0
@@ -67,3 +71,8 @@ class ClientCounters:
     """Followed reports with a state out of order."""
     bad_frames: int = 0
     """Frames that cannot be read."""
+
+    def count_bytes(self, received: int, sent: int) -> None:
+        """Count bytes received and sent."""
+        self.bytes_in += received
+        self.bytes_out += sent
