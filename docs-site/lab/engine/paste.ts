@@ -168,7 +168,7 @@ function spelledIn(line: string, heads: Heads): Run | null {
 export const FILE_LIMIT = 64 * 1024 * 1024
 
 /**
- * Returns the text of an opened file, for the box of the laboratory. Captured packets become a dump of their streams,
+ * Returns the text of an opened file, for the box of the frame lab. Captured packets become a dump of their streams,
  * and other bytes a dump; a text file does not change. Throws `Refusal`.
  */
 export function readFile(bytes: Uint8Array, heads: Heads): string {

@@ -1,4 +1,4 @@
-// The state of the laboratory as text, for the page's address or for the tab. It never goes to a server, since a
+// The state of the frame lab as text, for the page's address or for the tab. It never goes to a server, since a
 // browser does not send the part after `#`.
 
 import { deflateSync, inflateSync } from 'fflate'
@@ -28,7 +28,7 @@ export function toHash(state: LabState): string {
   return MARK + btoa(binary).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '')
 }
 
-/** The bytes of one frame in an address, as the frames of other pages link to the laboratory. */
+/** The bytes of one frame in an address, as other pages link to the frame lab. */
 const FRAME = /^hex=((?:[0-9a-f]{2})+)$/i
 
 /** Returns the state in such a part, with or without its `#`; `null` if it has none. */
