@@ -1,4 +1,4 @@
-// Prints what js-yaml and yaml read in each file, as one JSON object; a refusal as a text.
+// Prints the values that js-yaml and yaml read in each file, as one JSON object; an error as a text.
 import { readFileSync } from 'node:fs';
 import { load } from 'js-yaml';
 import { parse } from 'yaml';

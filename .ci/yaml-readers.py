@@ -1,6 +1,6 @@
-"""Compares what five YAML readers read in the files named: every value must be the same in all of them.
+"""Compares the values that five YAML readers read in the given files: all must be the same.
 
-A day is a text to one reader and a date to another; as ISO 8601 both are the same, and only that is equal here.
+One reader returns a day as a text, another as a date. Both are equal here, in the form of ISO 8601.
 """
 
 import datetime
@@ -12,12 +12,12 @@ import tempfile
 import ruamel.yaml
 import yaml
 
-# Read differently by design of the readers: a comparison that does not see these sees nothing.
+# Values that the readers read differently by design: the comparison must notice them.
 DIFFERENT = ["a: on\n", "a: 12:30:00\n", "a: 1_000\n", "a: 0o17\n", "{ a: i64? }\n", "a: 1e3\n"]
 
 
 def plain(value):
-    """As JSON has it, with the keys as texts."""
+    """Returns a value in the form of JSON, with the keys as texts."""
     if isinstance(value, dict):
         return {str(plain(key)): plain(item) for key, item in value.items()}
     if isinstance(value, list):
@@ -41,13 +41,13 @@ def read(reader, path):
 
 
 def outside(command, paths):
-    """What a program says of the files: one JSON object by path and reader."""
+    """Returns a program's output for the files: one JSON object by path and reader."""
     out = subprocess.run([*command, *paths], check=True, stdout=subprocess.PIPE).stdout
     return json.loads(out)
 
 
 def readings(mjs, tree, paths):
-    """By path, what each reader reads."""
+    """Returns the value of each reader, by path."""
     others = outside(["node", mjs], paths)
     ours = outside([tree], paths)
     for path in paths:
@@ -61,7 +61,7 @@ def readings(mjs, tree, paths):
 
 
 def difference(one, other, place=""):
-    """Where two values differ first, and how."""
+    """Returns the first difference between two values."""
     if isinstance(one, dict) and isinstance(other, dict) and one.keys() == other.keys():
         pairs = ((key, one[key], other[key]) for key in one)
     elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
@@ -75,7 +75,7 @@ def difference(one, other, place=""):
 
 
 def disagreements(found):
-    """A line for each reader that refuses, or that reads something else than the first one."""
+    """Returns a line for each reader that fails, or that differs from the first one."""
     lines = [f"{name}: {reading['refused']}" for name, reading in found.items() if "refused" in reading]
     accepted = [(name, reading["value"]) for name, reading in found.items() if "refused" not in reading]
     for name, value in accepted[1:]:

@@ -1,4 +1,4 @@
-// The protocol with MD5 of the package and gzip for a browser.
+// The protocol with the package's MD5 and a gzip for browsers.
 
 import { Gunzip, gzipSync } from 'fflate'
 import { md5, protocol, type Codec, type GunzipFault } from './fc'
@@ -29,7 +29,7 @@ function gunzip(member: Uint8Array, limit: number): Uint8Array | GunzipFault {
   return plain
 }
 
-/** What the pages take apart and make frames with. */
+/** The codec that the pages decode and encode frames with. */
 export const codec: Codec = {
   protocol,
   algorithms: {

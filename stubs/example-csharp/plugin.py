@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""C# of a spec: gets what `fcproto inspect` prints, with the target's options, and answers with files.
+"""Generates C# from a spec: reads the output of `fcproto inspect` with the target's options, and prints files.
 
-`fc.yaml` names it. What all messages have in common is in `runtime`; this program says of each type what it is called
-in C#, and names each field once. Standard library only.
+`fc.yaml` names this program. The code shared by all messages is in `runtime`. This program gives each type its C# name,
+and names each field once. It uses only the standard library.
 """
 
 import json
 import sys
 from xml.sax.saxutils import escape
 
-# Types of the spec: what they are in C#, the codec that reads and writes them, and whether C# allows no null there.
+# Types of the spec: type in C#, codec, and `True` if C# allows no null there.
 SCALARS = {
     "bool": ("bool", "Bool"),
     "i8": ("sbyte", "I8"),
@@ -36,7 +36,7 @@ KEYWORDS = set(
     ulong unchecked unsafe ushort using virtual void volatile while
     """.split()
 )
-# Names that the runtime, what is generated here or every object of C# has.
+# Names of the runtime, of generated code, and of every C# object.
 OWN_TYPES = set(
     """
     Bodies Codec Codecs Constraint Enums Fault Faults Form Frame HeaderField HeaderRole Json Layout Message
@@ -51,7 +51,7 @@ OWN_MEMBERS = set(
 
 
 class Unusable(Exception):
-    """The spec says something that this program or C# cannot say."""
+    """The spec has something that this program or C# cannot express."""
 
 
 def pascal(name):
@@ -65,7 +65,7 @@ def camel(name):
 
 
 def named(names, taken, where):
-    """The names in C#, by those of the spec. One that is taken gets a `_`; two that become one are a fault."""
+    """Returns the C# names by those of the spec. A taken name gets a `_`; two names that become one are an error."""
     found = {}
     for name in names:
         spelled = pascal(name)
@@ -78,12 +78,12 @@ def named(names, taken, where):
 
 
 def text(value):
-    """A string of C#."""
+    """Returns a C# string."""
     return json.dumps(value)
 
 
 def summary(pad, item, *facts):
-    """A comment in both languages, with the facts behind it."""
+    """Returns a comment in both languages, with the facts after it."""
     parts = [f"{item['zh']} {item['en']}"]
     if item.get("about"):
         parts += [item["about"]["zh"], item["about"]["en"]]
@@ -116,7 +116,7 @@ def bound(value, is_float):
 
 
 def pattern(value):
-    """A regular expression of the spec in the words of .NET."""
+    """Returns a regular expression of the spec in the syntax of .NET."""
     for words in ("[[:", "\\x{", "\\u{", "\\U{", "\\<", "\\>", "(?x", "\\A", "\\z", "\\b{"):
         if words in value:
             raise Unusable(f"the pattern `{value}`: .NET has no `{words}`")
@@ -124,7 +124,7 @@ def pattern(value):
 
 
 class Field:
-    """A field of a message: what it is in C#, and how it travels."""
+    """A field of a message: its C# type and its form in JSON."""
 
     def __init__(self, package, struct, field, name):
         self.field, self.name, self.key = field, name, field["path"]
@@ -151,7 +151,7 @@ class Field:
             self.traits.append(f".Only({', '.join(only)})")
         self.traits += [".EmptyIsAbsent()"] if "empty_is_absent" in quirks else []
         self.traits += [".Sensitive()"] if field.get("sensitive") else []
-        # The struct of an enum of texts may hold none.
+        # The struct of an enum of texts may be empty.
         self.is_text_enum = package.is_text_enum(field["type"])
 
     def property(self):
@@ -200,7 +200,7 @@ class Package:
         return ty is not None and ty["kind"] == "enum" and ty["repr"] == "string"
 
     def type_of(self, name, form, lenient):
-        """A type in C#, the expression of its codec, and whether it takes no null."""
+        """Returns a type in C#, the expression of its codec, and `True` if it takes no null."""
         if name.startswith("["):
             item, codec, _ = self.type_of(name[1:-1], form, lenient)
             return f"IList<{item}>", f"Codecs.List({codec})", False
@@ -221,7 +221,7 @@ class Package:
         return spelled, f"Codecs.Choice<{spelled}>({variants})", False
 
     def message(self, ty, name):
-        """The class of a struct, and what its fields are."""
+        """Returns the class of a struct, with the shape of its fields."""
         taken = OWN_MEMBERS | {name}
         members = named([field["name"] for field in ty["fields"]], taken, f"the type `{ty['name']}`")
         fields = [Field(self, ty, field, members[field["name"]]) for field in ty["fields"]]
@@ -307,7 +307,7 @@ class Package:
         return f"internal static Codec<{name}> {name}(bool lenient = false) => {made};"
 
     def types_file(self, group):
-        """The types of a group; those that groups share have none."""
+        """Returns the types of a group; shared types are in no group."""
         lines, shapes = [], []
         for ty in self.dump["types"]:
             if ty["group"] != group:
@@ -369,7 +369,7 @@ class Package:
         return [*lines, *(f"            {name}," for name in names.values()), "        };", "    }"]
 
     def wire_file(self):
-        """The layout of frames, and the envelopes, which are messages like any others."""
+        """Returns the layout of frames, and the envelopes, which are messages like any others."""
         protocol = self.dump["protocol"]
         frame, limits = protocol["frame"], protocol["limits"]
         kinds = ", ".join(f"{{ {kind['value']}, {text(kind['role'])} }}" for kind in frame["kinds"])
@@ -462,7 +462,7 @@ class Package:
         for path, lines in made.items():
             opening = [
                 f"// Made by `fcproto generate` of version {version} of the spec. Change the spec instead.",
-                # The fields of what is deprecated are read and written all the same.
+                # Deprecated fields are still read and written.
                 "#pragma warning disable 612, 618",
                 "using System.Collections.Generic;",
                 "using FcRuntime;",

@@ -1,5 +1,5 @@
-// A captured stream: where each frame begins and ends, what lies between frames, what each frame says,
-// and which response belongs to which request.
+// A captured stream: its frames, the bytes between them, the content of each frame, and the pairs of requests and
+// responses.
 
 import {
   decodeFrame, fieldOf, headerValue, operationOf, readBody, sideOf,
@@ -9,18 +9,18 @@ import type { Segment } from './dump'
 
 /** A run of bytes of one stream. */
 export interface Piece {
-  /** A frame, sound or not; the beginning of one where the stream ends; bytes that belong to none. */
+  /** A frame, valid or not; the beginning of one at the end of the stream; bytes that belong to none. */
   is: 'frame' | 'partial' | 'garbage'
   stream: number
   /** First byte, counted in its stream. */
   at: number
   bytes: Uint8Array
   decoded: Decoded
-  /** Bytes that a partial frame lacks; at least so many where not even its length is there. */
+  /** Bytes that a partial frame lacks; a minimum if even its length is missing. */
   missing: { bytes: number; atLeast: boolean } | null
 }
 
-/** A piece, and what is to be said of it. */
+/** A piece with its decoded facts. */
 export interface Judged extends Piece {
   side: Side | null
   kind: Kind | null
@@ -29,23 +29,23 @@ export interface Judged extends Piece {
   code: number | null
   body: BodyReport | null
   fault: ErrorName | null
-  /** Place in the list of the frame that this one answers or that answers it. */
+  /** Index of the response to this frame, or of its request. */
   partner: number | null
-  /** Place of the first frame with the same kind, code and id from the same side. */
+  /** Index of the first frame with the same kind, code and id from the same side. */
   repeats: number | null
 }
 
-/** All that was pasted. */
+/** All pasted bytes. */
 export interface Capture {
   pieces: Judged[]
   frames: number
   sound: number
-  /** Frames with a code that the spec does not know. */
+  /** Frames with a code that the spec does not declare. */
   unknown: number
   streams: number
   /** Bytes that belong to no frame. */
   skipped: number
-  /** Good only if every byte belongs to a sound frame of a known operation. */
+  /** Good only if every byte belongs to a valid frame of a known operation. */
   level: 'good' | 'care' | 'bad'
 }
 
@@ -58,10 +58,10 @@ export function splitStream(codec: Codec, bytes: Uint8Array, stream = 0): Piece[
   const lengthFault = (decoded: Decoded) => decoded.verdicts.find(({ what }) => what === 'length')?.fault ?? null
   const decode = (at: number, end?: number) => decodeFrame(codec, bytes.subarray(at, end))
 
-  /** A frame may well begin here: the head is whole, and so far nothing speaks against it. */
+  /** Returns `true` if a frame may begin here: the head is complete, and the header has no error so far. */
   const plausible = (at: number) => {
     if (!headAt(at)) return false
-    // Only the header: a digest over all that follows would make a long search slow.
+    // Only the header: a digest over all later bytes would make a long search slow.
     const header = decode(at, at + protocol.headerLength)
     const bad = lengthFault(header)
     if (bad !== null && bad !== 'truncated') return false
@@ -72,7 +72,7 @@ export function splitStream(codec: Codec, bytes: Uint8Array, stream = 0): Piece[
       (encoding === null || protocol.encodings.some(({ value }) => value === encoding))
     )
   }
-  /** A frame begins here: it is sound, or what follows it is a frame or the end. */
+  /** Returns `true` if a frame surely begins here: it is valid, or a frame or the end follows it. */
   const certain = (at: number) => {
     if (!plausible(at)) return false
     const decoded = decode(at)
@@ -98,7 +98,7 @@ export function splitStream(codec: Codec, bytes: Uint8Array, stream = 0): Piece[
     else if (bad === null) {
       const end = at + protocol.headerLength + decoded.data.length
       const trusted = decoded.fault === null || end === bytes.length || headAt(end)
-      // A frame that lost bytes reaches into the next one.
+      // A frame that lost bytes extends into the next one.
       add('frame', trusted ? end : (find(at + 1, end, certain) ?? end))
     } else if (bad === 'truncated') {
       const next = find(at + 1, bytes.length, certain)
@@ -112,7 +112,7 @@ export function splitStream(codec: Codec, bytes: Uint8Array, stream = 0): Piece[
   return pieces
 }
 
-/** What is to be said of a piece by itself. */
+/** Decodes a piece without looking at others. */
 function judge(protocol: Protocol, piece: Piece): Judged {
   const { decoded } = piece
   const known = piece.is !== 'garbage'
@@ -127,7 +127,7 @@ function judge(protocol: Protocol, piece: Piece): Judged {
   return { ...piece, side, kind, id: known ? headerValue(decoded, 'id') : null, operation, code, body, fault, partner: null, repeats: null }
 }
 
-/** Ties responses to requests by kind, code and id: to the nearest before, or else to one behind. */
+/** Pairs responses with requests by kind, code and id: with the nearest request before, or else with one after. */
 function pair(pieces: Judged[]): void {
   const key = ({ kind, code, id }: Judged) => (kind === null || code === null || id === null ? null : `${kind.value} ${code} ${id}`)
   const open = new Map<string, number[]>()
@@ -151,7 +151,7 @@ function pair(pieces: Judged[]): void {
   })
 }
 
-/** Takes apart what was pasted. */
+/** Splits and decodes the pasted bytes. */
 export function readCapture(codec: Codec, segments: Segment[]): Capture {
   const streams = [...new Set(segments.map(({ stream }) => stream))]
   const placed: { piece: Piece; order: number }[] = []

@@ -1,7 +1,7 @@
 // Hex dumps: lines of an offset, bytes, and perhaps the same bytes as text. xxd, hexdump, od, tcpdump -X, Wireshark,
 // gdb, PowerShell and this site print them.
 
-/** A run of bytes, and which of several streams it belongs to. */
+/** A run of bytes with the number of its stream. */
 export interface Segment {
   stream: number
   bytes: Uint8Array
@@ -18,7 +18,7 @@ export type Dump = { segments: Segment[] } | Missing
 
 interface Group {
   gap: number
-  /** Column behind its last digit, counted from the offset. */
+  /** Column after its last digit, counted from the offset. */
   end: number
   digits: string
   /** A number with `0x`: the lower byte first. */
@@ -30,12 +30,12 @@ interface Line {
   number: number
   indent: string
   offset: string
-  /** Followed by a colon or opened by 0x: surely an offset. */
+  /** Followed by a colon or preceded by 0x: surely an offset. */
   marked: boolean
-  /** The text behind the offset. */
+  /** The text after the offset. */
   rest: string
   groups: Group[]
-  /** The line before is repeated down to here. */
+  /** A star: the line before is repeated up to here. */
   squeezed: boolean
 }
 
@@ -43,7 +43,7 @@ const OFFSET = /^(\s*)(0x)?([0-9a-fA-F]{4,16})(?: <[^>]*>)?(:?)(?=\s|$)/
 /** Lines that PowerShell prints above a dump. */
 const CAPTION = /^\s*(?:(?:0?[0-9a-f] ){8,}.*|[-\s]+|(?:Offset|Label|Path)\b.*)$/i
 
-/** The lines of a text that look like those of a dump, if it can be one. */
+/** Returns the lines of a text that look like a dump; empty if it cannot be one. */
 function linesOf(text: string): Line[] {
   const lines: Line[] = []
   let squeezed = false
@@ -70,7 +70,7 @@ function linesOf(text: string): Line[] {
   return others && lines.some(({ marked }) => !marked) ? [] : lines
 }
 
-/** How a line spells its bytes: one after the other, the lower byte of a group first, or in bits. */
+/** Order of the bytes in a line: one after another, the lower byte of a group first, or in bits. */
 interface Order {
   is: 'plain' | 'swapped' | 'bits'
   /** Column where the bytes end; `xxd -e` leaves a gap before the last of them. */
@@ -78,7 +78,7 @@ interface Order {
 }
 const PLAIN: Order = { is: 'plain' }
 
-/** The first `cap` bytes of a line; the column of text follows. */
+/** Returns the first `cap` bytes of a line. The column of text follows them. */
 function bytesOf({ groups }: Line, cap: number, order: Order): number[] {
   const bytes: number[] = []
   for (const { gap, end, digits, swapped } of groups) {
@@ -94,12 +94,15 @@ function bytesOf({ groups }: Line, cap: number, order: Order): number[] {
   return bytes.slice(0, cap)
 }
 
-/** The bytes of a dump, or where it has a hole; `null` if the text is none. `heads` decide between two readings. */
+/**
+ * Returns the bytes of a dump, or the place of a gap; `null` if the text is not a dump. `heads` decide between two
+ * readings.
+ */
 export function readDump(text: string, heads: Heads = []): Dump | null {
   const lines = linesOf(text)
   const first = lines[0]
   if (!first) return null
-  // `od` and `hexdump` print numbers of several notations and sizes behind six or seven digits.
+  // `od` and `hexdump` print numbers of several notations and sizes after six or seven digits.
   const { length } = first.offset
   if ((length === 6 || length === 7) && lines.every(({ offset, marked }) => offset.length === length && !marked)) return readNumbered(lines)
 
@@ -108,12 +111,12 @@ export function readDump(text: string, heads: Heads = []): Dump | null {
     const read = walk(lines, radix, order)
     if ('segments' in read) return isDump(lines, radix) ? read : null
   }
-  // With the marks of a dump it is one all the same: name the missing line instead of reading offsets as bytes.
+  // A text with the marks of a dump is one: report the missing line instead of reading offsets as bytes.
   const marked = first.marked || (Number.parseInt(first.offset, 16) === 0 && lines.length > 1)
   return marked ? walk(lines, 16, order) : null
 }
 
-/** The order of `xxd -e`, which its column of text or the head of a frame shows; bits where `xxd -b` printed them. */
+/** Returns the order of the bytes. The column of text or the head of a frame shows `xxd -e`; bits show `xxd -b`. */
 function orderOf(lines: Line[], heads: Heads): Order {
   const [first, second] = lines
   const all = (digits: RegExp) => lines.every(({ marked, groups }) => marked && groups.length > 0 && (groups[0].gap > 2 || digits.test(groups[0].digits)))
@@ -131,7 +134,10 @@ function orderOf(lines: Line[], heads: Heads): Order {
   return !agrees(PLAIN) && agrees(swapped) ? swapped : PLAIN
 }
 
-/** Plain hex can have four digits in front, too: a dump begins at zero, marks its offsets, or counts. */
+/**
+ * Returns `true` for a dump: it begins at zero, marks its offsets, or counts. Plain hex may also have four digits in
+ * front.
+ */
 function isDump(lines: Line[], radix: number): boolean {
   const [first, second] = lines
   if (first.groups.length === 0) return false
@@ -151,7 +157,7 @@ function walk(lines: Line[], radix: number, order: Order): Dump {
     followers[at] = seen.get(lines[at].indent)
     seen.set(lines[at].indent, lines[at])
   }
-  /** Bytes of a whole line, where no other tells how many there are. */
+  /** Number of bytes in a full line, unless another line shows it. */
   let width = 16
   for (const [index, line] of lines.entries()) {
     const offset = Number.parseInt(line.offset, radix)
@@ -171,24 +177,24 @@ function walk(lines: Line[], radix: number, order: Order): Dump {
     const bytes = bytesOf(line, known ? after - offset : width, order)
     if (known) width = Math.max(bytes.length, segments.length === 0 ? 0 : 1)
     next.set(line.indent, offset + bytes.length)
-    // A block that begins anew is a packet of its own; so is the other side's turn.
+    // A block that begins again is a separate packet, and so is the other side's turn.
     if (last && last.indent === line.indent && offset !== 0) last.bytes.push(...bytes)
     else if (bytes.length > 0) segments.push({ stream: streams.indexOf(line.indent), indent: line.indent, bytes })
   }
   return { segments: segments.map(({ stream, bytes }) => ({ stream, bytes: Uint8Array.from(bytes) })) }
 }
 
-/** The most bytes that a star repeats: it may mean gigabytes. */
+/** Most bytes that a star repeats: it could mean gigabytes. */
 const REPEATED_LIMIT = 4 * 1024 * 1024
 
-/** Adds the last row again and again, as `*` in a dump asks for. */
+/** Repeats the last row, as `*` in a dump requests. */
 function repeat(bytes: number[], width: number, count: number): void {
   const row = bytes.slice(-width)
   if (row.length === 0) return
   for (let at = 0; at < Math.min(count, REPEATED_LIMIT); at++) bytes.push(row[at % row.length])
 }
 
-/** A way to spell one number, with the number of bytes that it has. */
+/** A notation of a number, with its size in bytes. */
 interface Notation {
   size: number
   spelled: RegExp
@@ -212,10 +218,10 @@ const NOTATIONS: Notation[] = [
   { size: 8, spelled: /^[-+]?\d{1,20}$/, read: BigInt },
 ]
 
-/** The numbers of a line, without a column of text. */
+/** Returns the numbers of a line, without a column of text. */
 const tokensOf = ({ rest }: Line) => rest.replace(/\s{2}[>|].*$/, '').trim().split(/\s+/).filter(Boolean)
 
-/** The bytes of numbers, the lower byte of each first. */
+/** Returns the bytes of numbers, the lower byte of each first. */
 function littleEndian(tokens: string[], { size, read }: Notation): number[] {
   return tokens.flatMap((token) => {
     const value = BigInt.asUintN(64, read(token))
@@ -223,7 +229,7 @@ function littleEndian(tokens: string[], { size, read }: Notation): number[] {
   })
 }
 
-/** Characters as `od -c` prints them, four columns each; `null` if the line is none, or has not `count` of them. */
+/** Reads characters as `od -c` prints them, four columns each; `null` if the line has none, or not `count` of them. */
 const NAMED: Record<string, number> = { '\\0': 0, '\\a': 7, '\\b': 8, '\\t': 9, '\\n': 10, '\\v': 11, '\\f': 12, '\\r': 13 }
 function characters({ rest }: Line, count: number | null): number[] | null {
   const bytes: number[] = []
@@ -239,7 +245,7 @@ function characters({ rest }: Line, count: number | null): number[] | null {
   return bytes
 }
 
-/** A dump of `od` or `hexdump`. The offsets tell how many bytes each number has. */
+/** Reads a dump of `od` or `hexdump`. The offsets show the size of each number. */
 function readNumbered(lines: Line[]): Dump | null {
   const bare = lines.filter((line, index) => tokensOf(line).length === 0 && index < lines.length - 1)
   if (bare.length > 0 || tokensOf(lines[0]).length === 0) return null
@@ -249,7 +255,7 @@ function readNumbered(lines: Line[]): Dump | null {
     const read = numbered(lines, radix)
     if (read) return read
   }
-  // It counts from zero, so it is a dump: name the missing line instead of reading offsets as bytes.
+  // It counts from zero, so it is a dump: report the missing line instead of reading offsets as bytes.
   if (/[^0]/.test(lines[0].offset) || lines.length < 2) return null
   const radix = { '20': 8, '10': 16, '16': 10 }[lines[1].offset.replace(/^0+/, '')] ?? 16
   let before = 0
@@ -261,12 +267,12 @@ function readNumbered(lines: Line[]): Dump | null {
   return null
 }
 
-/** The bytes with offsets in this radix, if the lines are as long as these say. */
+/** Returns the bytes with offsets in this radix, if the lines have the lengths that the offsets imply. */
 function numbered(lines: Line[], radix: number): Dump | null {
   const offsets = lines.map(({ offset }) => Number.parseInt(offset, radix))
   if (offsets.some((offset, index) => index > 0 && offset <= offsets[index - 1])) return null
   const full = offsets[1] - offsets[0]
-  /** Bytes of a line: a squeezed one tells only of those before it. */
+  /** Returns the number of bytes in a line; `null` for the last one and before a squeezed one. */
   const count = (index: number) => (index + 1 < lines.length && !lines[index + 1].squeezed ? offsets[index + 1] - offsets[index] : null)
   const row = lines.length > 1 && !lines[1].squeezed ? full : 16
   for (const notation of NOTATIONS) {
@@ -282,7 +288,7 @@ function numbered(lines: Line[], radix: number): Dump | null {
   return joined(lines, offsets, (line, index) => characters(line, count(index)) ?? [], count, row)
 }
 
-/** A number has no more bytes than its notation gives it. */
+/** Returns `true` if a number fits the size of its notation. */
 function fitsIn(token: string, { size, read }: Notation): boolean {
   const value = read(token)
   return value >= -(1n << BigInt(8 * size - 1)) && value < 1n << BigInt(8 * size)
@@ -297,11 +303,11 @@ function joined(lines: Line[], offsets: number[], bytesOf: (line: Line, index: n
   return { segments: [{ stream: 0, bytes: Uint8Array.from(bytes) }] }
 }
 
-/** Numbers of `od -An`, which prints no offsets: read where a frame begins them, and only there. */
+/** Reads numbers of `od -An`, which prints no offsets, but only if they begin with a frame. */
 export function readUnnumbered(text: string, heads: Heads): Uint8Array | null {
   const tokens = text.trim().split(/\s+/)
   for (const notation of NOTATIONS) {
-    // Bytes in hex are hex, and decimal numbers of several bytes are anything.
+    // Single bytes in hex are plain hex, and decimal numbers of several bytes are ambiguous.
     if ((notation.size === 1 && notation.read === hexadecimal) || notation.read === BigInt) continue
     if (!tokens.every((token) => notation.spelled.test(token))) continue
     const bytes = littleEndian(tokens, notation)

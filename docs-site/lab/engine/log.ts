@@ -1,7 +1,7 @@
-// Bytes in the lines of a log: logcat, SLF4J and its kin, serial and network tools, socat, Netty, Node, Python.
+// Bytes in the lines of a log: logcat, SLF4J and similar, serial and network tools, socat, Netty, Node, Python.
 //
-// Each line is a time, words and perhaps bytes. Those that belong to frames are told from ids, addresses and digests by
-// the words before them: where one frame begins behind these words, all bytes behind them are read.
+// Each line has a time, words and perhaps bytes. The words before bytes distinguish frames from ids, addresses and
+// digests. If a frame begins after these words once, all bytes after them are read.
 
 import { readDump, type Heads, type Segment } from './dump'
 
@@ -12,13 +12,13 @@ export interface Run {
   bytes: Uint8Array
 }
 
-/** Finds bytes that a line spells in another form than hex. */
+/** Finds bytes in a line in a form other than hex. */
 export type Spelled = (line: string) => Run | null
 
-/** Why bytes of a log are not read. */
+/** The reason why bytes of a log are not read. */
 export interface LogSlip {
   line: number
-  /** A token that is no byte, or the number of digits of a run with an odd one. */
+  /** A token that is not a byte, or the number of digits of a run with an odd one. */
   token: string | number
 }
 
@@ -26,11 +26,11 @@ const DATE = String.raw`(?:\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}(?:[
 const TIME = String.raw`\d{1,2}:\d{2}:\d{2}(?:[.,]\d{1,9}|:\d{3})?(?: ?[AP]M\b)?(?:Z|[+-]\d{2}:?\d{2})?`
 const STAMP = new RegExp(String.raw`(?<![\w:])(?:${DATE}[ T,]{1,2})?${TIME}(?![\w:])|(?<![\w:])${DATE}(?=[\])] )|\b\d{10}\.\d{3,9}\b|\[ *\d{1,7}\.\d{3,6}\]`, 'g')
 const LEVEL = /(?:^|[\s[(|])(?:TRACE|DEBUG|INFO|NOTICE|WARN(?:ING)?|ERROR|FATAL|[Tt]race|[Dd]ebug|[Ii]nfo|[Ww]arn)(?=[\s\])|:]|$)|^\s*[VDIWEF]\/[^\s:]+.*?: /
-/** Words and signs before bytes that were sent, and before received ones. */
+/** Words and signs before sent bytes, and before received ones. */
 const SENT = /\b(?:tx|sen[dt]\w*|writ\w*|wrote|out(?:going|bound)?|request)\b|>>|->|=>|→|◇|发|^\s*> /gi
 const RECEIVED = /\b(?:rx|recv|receiv\w*|read|in(?:coming|bound)?|response)\b|<<|<-|<=|←|◆|收|^\s*< /gi
 
-/** The times of a line, and the lengths that it tells, are no bytes. */
+/** The times and lengths in a line are not bytes. */
 const blank = (text: string) => '\u0001'.repeat(text.length)
 const without = (line: string) =>
   line
@@ -40,9 +40,9 @@ const without = (line: string) =>
 
 const BYTE = '[0-9A-Fa-f]{2}'
 const RUN = new RegExp(String.raw`(?<![0-9A-Za-z_.])(?:0x)?${BYTE}(?:(?:[ \t]{1,2}|, ?|[:;|-])?(?:0x)?${BYTE})*(?![0-9A-Za-z_])`, 'g')
-/** Shorter runs are numbers. */
+/** Shorter runs count as numbers. */
 const SHORT = 4
-/** A line of a dump behind other words: its offset and its bytes. */
+/** A line of a dump after other words: its offset and its bytes. */
 const DUMPED = /(?:^|[^0-9A-Za-z])((?:0x)?[0-9a-fA-F]{4,8})(?:[:|]| (?= ?[0-9a-fA-F]{2}[ 0-9a-fA-F]))((?: {0,2}[0-9a-fA-F]{2})+)(?=\s*$|\s*[|>]|\s{2})/
 
 /** A token that is almost a byte, between bytes. */
@@ -54,7 +54,7 @@ interface Found {
   line: number
   /** The words before the bytes, with all digits alike. */
   label: string
-  /** The text behind them. */
+  /** The text after them. */
   rest: string
   bytes: Uint8Array
   stream: Way
@@ -62,21 +62,21 @@ interface Found {
 
 type Way = 'sent' | 'received' | null
 
-/** Which way the words before the bytes tell; the last of them counts. */
+/** Returns the direction shown by the words before the bytes; the last word counts. */
 function way(words: string): Way {
   const last = (signs: RegExp) => Array.from(words.matchAll(signs)).at(-1)?.index ?? -1
   const [sent, received] = [last(SENT), last(RECEIVED)]
   return sent === received ? null : sent > received ? 'sent' : 'received'
 }
 
-/** Some line has a time, a level or a direction in front of its bytes. */
+/** Returns `true` if a line has a time, a level or a direction in front of its bytes. */
 export const isLog = (source: string): boolean =>
   source.split('\n').some((line) => {
     const place = line.search(STAMP)
     return (place >= 0 && place < 12) || LEVEL.test(line)
   })
 
-/** The bytes of a log; `null` if it has none that can be told from other words. */
+/** Returns the bytes of a log; `null` if they cannot be distinguished from other words. */
 export function readLog(source: string, heads: Heads, spelled: Spelled): Segment[] | LogSlip | null {
   const begins = (bytes: Uint8Array) => heads.some((head) => head.every((byte, index) => bytes[index] === byte))
   const lines = source.split('\n')
@@ -103,7 +103,7 @@ export function readLog(source: string, heads: Heads, spelled: Spelled): Segment
   if (labels.size === 0) return null
   const kept = found.filter(({ bytes, label }) => begins(bytes) || labels.has(label))
   for (const { line, rest } of kept) {
-    // A digit is wrong, and the bytes behind it would be lost.
+    // A digit is wrong, so the bytes after it would be lost.
     const token = ALMOST.exec(rest)?.[1]
     if (token !== undefined) return { line, token }
   }
@@ -111,7 +111,7 @@ export function readLog(source: string, heads: Heads, spelled: Spelled): Segment
   return kept.map(({ bytes, stream }) => ({ stream: ways.indexOf(stream), bytes }))
 }
 
-/** The longest run of bytes of a line, or the one that begins a frame. */
+/** Returns the longest run of bytes in a line, or the one that begins a frame. */
 function longest(line: string, begins: (bytes: Uint8Array) => boolean): Run | null {
   let best: Run | null = null
   for (const { 0: run, index } of line.matchAll(RUN)) {
@@ -126,7 +126,7 @@ function longest(line: string, begins: (bytes: Uint8Array) => boolean): Run | nu
   return best
 }
 
-/** Dumps in a log, whose lines may have a time in front. */
+/** Reads dumps in a log, whose lines may have a time in front. */
 function readDumped(lines: string[]): Segment[] | null {
   const dumps: string[] = []
   const ways: Way[] = []

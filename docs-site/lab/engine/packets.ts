@@ -1,5 +1,5 @@
-// Whole packets as capture tools print and keep them: their Ethernet, IP and TCP headers come off, and the byte
-// streams remain. Segments that are no packets stay as they are.
+// Whole packets as capture tools print and store them. Their Ethernet, IP and TCP headers are removed, and the byte
+// streams remain. Segments that are not packets do not change.
 
 import { readUint } from '../fc'
 import type { Heads, Segment } from './dump'
@@ -9,14 +9,14 @@ interface Packet {
   from: string
   to: string
   sequence: number
-  /** It opens a connection. */
+  /** `true` if it opens a connection. */
   opens: boolean
   payload: Uint8Array
 }
 
 const number = (bytes: Uint8Array, at: number, size: number) => readUint(bytes.subarray(at, at + size), 'big')
 
-/** The TCP segment in an IP packet, `null` if this is none. */
+/** Returns the TCP segment in an IP packet; `null` if there is none. */
 function inside(bytes: Uint8Array): Packet | null {
   const version = bytes[0] >> 4
   let header: number
@@ -43,7 +43,7 @@ function inside(bytes: Uint8Array): Packet | null {
   return { from: end(0), to: end(1), sequence: number(tcp, 4, 4), opens: (tcp[13] & 2) !== 0, payload: tcp.subarray(offset) }
 }
 
-/** Ethernet, the two "cooked" forms of Linux, BSD's loopback, or bare IP: where the version's nibble stands. */
+/** Finds the IP header after Ethernet, the two "cooked" forms of Linux, BSD's loopback, or at the start. */
 function packetOf(bytes: Uint8Array): Packet | null {
   for (const link of [0, 14, 18, 16, 20, 4]) {
     const found = bytes.length > link ? inside(bytes.subarray(link)) : null
@@ -55,15 +55,15 @@ function packetOf(bytes: Uint8Array): Packet | null {
 /** One direction of a connection. */
 interface Flow {
   stream: number
-  /** The ends of the connection, in one order for both directions. */
+  /** Both ends of the connection, in the same order for both directions. */
   connection: string
   /** The sequence number of the next byte. */
   next: number
-  /** Packets that came before one that is still missing. */
+  /** Packets that came before a missing one. */
   early: Packet[]
 }
 
-/** Adds the new bytes of a packet to `found`; a packet that is too early waits. */
+/** Adds the new bytes of a packet to `found`. An early packet waits. */
 function take(flow: Flow, packet: Packet, found: Segment[]): void {
   const ahead = (packet.sequence - flow.next) | 0
   if (ahead > 0) {
@@ -76,7 +76,7 @@ function take(flow: Flow, packet: Packet, found: Segment[]): void {
   flow.next = (flow.next + fresh.length) >>> 0
 }
 
-/** Packets that waited, in the order of their bytes; `all` of them, or those that have become the next. */
+/** Takes packets that waited, in the order of their bytes: all of them, or those that are next. */
 function takeEarly(flow: Flow, found: Segment[], all: boolean): void {
   const from = flow.next
   const waiting = flow.early.sort((a, b) => ((a.sequence - from) | 0) - ((b.sequence - from) | 0))
@@ -87,14 +87,14 @@ function takeEarly(flow: Flow, found: Segment[], all: boolean): void {
         flow.early = waiting.slice(index)
         return
       }
-      // The capture lacks the bytes between.
+      // The capture lacks the bytes in between.
       flow.next = packet.sequence
     }
     take(flow, packet, found)
   }
 }
 
-/** The bytes of each flow in the order of its sequence numbers; bytes that were sent again count once. */
+/** Returns the bytes of each flow in the order of its sequence numbers. Repeated bytes count once. */
 function streamsOf(packets: Packet[]): { found: Segment[]; flows: Flow[] } {
   const open = new Map<string, Flow>()
   const flows: Flow[] = []
@@ -103,7 +103,7 @@ function streamsOf(packets: Packet[]): { found: Segment[]; flows: Flow[] } {
     const { from, to, sequence, opens, payload } = packet
     const name = `${from} ${to}`
     let flow = open.get(name)
-    // A new connection between the same ports counts anew.
+    // A new connection between the same ports starts a new count.
     if (!flow || (opens && flow.next !== ((sequence + 1) >>> 0))) {
       flow = { stream: flows.length, connection: [from, to].sort().join(' '), next: (sequence + Number(opens)) >>> 0, early: [] }
       flows.push(flow)
@@ -117,7 +117,7 @@ function streamsOf(packets: Packet[]): { found: Segment[]; flows: Flow[] } {
   return { found, flows }
 }
 
-/** The payload of printed packets; each flow is another stream. */
+/** Returns the payload of printed packets; each flow is a separate stream. */
 export function parsePackets(segments: Segment[]): Segment[] {
   const packets = segments.map(({ bytes }) => packetOf(bytes))
   const all = packets.filter((packet) => packet !== null)
@@ -125,8 +125,8 @@ export function parsePackets(segments: Segment[]): Segment[] {
 }
 
 /**
- * The streams of captured IP packets that have frames: of a whole network, a file has other traffic as well. `tcp` is
- * the number of its TCP packets.
+ * Returns the streams with frames of captured IP packets, since a capture of a whole network has other traffic as well.
+ * `tcp` is the number of TCP packets.
  */
 export function framesIn(packets: Uint8Array[], heads: Heads): { segments: Segment[]; tcp: number } {
   const all = packets.map(inside).filter((packet) => packet !== null)

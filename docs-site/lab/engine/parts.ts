@@ -1,4 +1,4 @@
-// A decoded frame in the words of its fields, for the byte view.
+// A decoded frame as named parts, for the byte view.
 
 import { fieldOf, headerValue, hexByte, hexNumber, operationOf, sideOf, type Decoded, type HeaderField, type Protocol, type Text } from '../fc'
 
@@ -10,11 +10,11 @@ export interface Part extends Text {
   size: number
   /** The value, spelled for a reader. */
   value: string
-  /** Something is wrong with it. */
+  /** `true` if it has an error. */
   fault?: boolean
 }
 
-/** What a header field says, beside its number. */
+/** Returns the meaning of a header field's number. */
 function meaning(protocol: Protocol, field: HeaderField, value: number | null, decoded: Decoded): Text {
   if (field.role === 'kind') return protocol.kinds.find((kind) => kind.value === value) ?? field
   if (field.role === 'encoding') return protocol.encodings.find((encoding) => encoding.value === value) ?? field
@@ -37,7 +37,7 @@ const blames: Partial<Record<Decoded['verdicts'][number]['what'], HeaderField['r
   head: 'head', length: 'total_length', kind: 'kind', encoding: 'encoding', digest: 'digest', inflate: 'plain_length',
 }
 
-/** Every byte of the frame with the field that owns it. */
+/** Returns every byte of the frame with the field that owns it. */
 export function partsOf(protocol: Protocol, decoded: Decoded): Part[] {
   const blamed = new Set(decoded.verdicts.filter(({ fault }) => fault).map(({ what }) => blames[what]))
   const parts = decoded.fields
@@ -62,7 +62,7 @@ export function partsOf(protocol: Protocol, decoded: Decoded): Part[] {
       }
     })
   if (decoded.fault === 'bad_head') {
-    // Without a head nothing says that these bytes are a header at all.
+    // Without a head these bytes may not be a header at all.
     const [head] = parts.filter(({ name }) => name === fieldOf(protocol, 'head').wire)
     const offset = head ? head.offset + head.size : 0
     const size = decoded.bytes.length - offset

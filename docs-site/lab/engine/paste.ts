@@ -1,4 +1,4 @@
-// Pasted text to bytes: how engineers copy them out of their tools, and why a text is refused.
+// Converts pasted text to bytes, in the forms that engineers copy from their tools, and explains why a text is refused.
 
 import type { Text } from '../fc'
 import { readDump, readUnnumbered, type Heads, type Segment } from './dump'
@@ -8,16 +8,16 @@ import { readCaptureFile } from './pcap'
 
 export type { Segment } from './dump'
 
-/** How the bytes were spelled. */
+/** The form of the bytes. */
 export type Spelling = 'hex' | 'dump' | 'numbers' | 'string' | 'base64' | 'log'
 
-/** Bytes in the order in which they were pasted, each run with the stream that it belongs to. */
+/** Bytes in the order of pasting, each run with the number of its stream. */
 export interface Pasted {
   spelling: Spelling
   segments: Segment[]
 }
 
-/** Why a text is no bytes, in words for its reader. */
+/** The reason why a text has no bytes, in words for the reader. */
 export class Refusal extends Error {
   constructor(readonly text: Text) {
     super(text.en)
@@ -28,12 +28,12 @@ const refuse = (zh: string, en: string): never => {
   throw new Refusal({ zh, en })
 }
 
-/** More text than this is not read: a page should stay usable. */
+/** Longest text that is read: a page should stay usable. */
 export const PASTE_LIMIT = 8 * 1024 * 1024
 
 const begins = (bytes: Uint8Array, heads: Heads) => heads.some((head) => head.every((byte, index) => bytes[index] === byte))
 
-/** The streams in bytes: of a file of captured packets those with frames, of others the bytes themselves. */
+/** Returns the streams in bytes: those with frames for a file of captured packets, otherwise the bytes themselves. */
 function streamsIn(bytes: Uint8Array, heads: Heads): Segment[] {
   const packets = readCaptureFile(bytes)
   if (!packets) return parsePackets([{ stream: 0, bytes }])
@@ -48,14 +48,14 @@ function streamsIn(bytes: Uint8Array, heads: Heads): Segment[] {
 }
 
 /**
- * Reads pasted text. `heads` are the ways in which a frame can begin: they tell bytes from other words. An empty text
- * has no bytes. Throws `Refusal`.
+ * Reads pasted text. `heads` are the possible beginnings of a frame: they distinguish bytes from other words. An empty
+ * text has no bytes. Throws `Refusal`.
  */
 export function readPaste(text: string, heads: Heads): Pasted {
   if (text.length > PASTE_LIMIT) refuse('内容太长，请分段粘贴。', 'This is too long. Paste a part of it.')
   const source = text.replace(/^\ufeff/, '').replace(/\r\n?/g, '\n')
   const alone = (spelling: Spelling, bytes: Uint8Array): Pasted => ({ spelling, segments: streamsIn(bytes, heads) })
-  /** Bytes between words; `null` if no frame begins among them. */
+  /** Returns bytes between words; `null` if no frame begins among them. */
   const among = (): Pasted | null => {
     const segments = readLog(source, heads, (line) => spelledIn(line, heads))
     if (segments === null) return null
@@ -110,7 +110,7 @@ export function readPaste(text: string, heads: Heads): Pasted {
   if (words) return alone('numbers', words)
 
   const packed = source.split('\n').map((line) => line.trim()).join('')
-  // Hex with a slip is no base64: that has many letters behind F.
+  // Hex with a typing error is not base64, which has many letters after F.
   const others = packed.match(/[^0-9a-fA-F]/g)?.length ?? 0
   if (packed.length % 4 === 0 && others * 8 > packed.length && /^[A-Za-z0-9+/]+={0,2}$/.test(packed)) {
     const bytes = fromBase64(packed)
@@ -147,7 +147,7 @@ function readBuffers(source: string): Segment[] | null {
   return segments.length > 0 ? segments : null
 }
 
-/** Bytes in a line of a log that are no hex: a string literal, a list of numbers or base64. */
+/** Returns bytes in a line of a log that are not hex: a string literal, a list of numbers or base64. */
 function spelledIn(line: string, heads: Heads): Run | null {
   const literal = ESCAPE.test(line) ? /"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'/g : null
   for (const { 0: text, index } of literal ? line.matchAll(literal) : []) {
@@ -164,12 +164,12 @@ function spelledIn(line: string, heads: Heads): Run | null {
   return null
 }
 
-/** More than this is not opened. */
+/** Largest file that is opened. */
 export const FILE_LIMIT = 64 * 1024 * 1024
 
 /**
- * The text of an opened file, for the box of the laboratory. Captured packets become a dump of their streams, and other
- * bytes a dump; a text file stays. Throws `Refusal`.
+ * Returns the text of an opened file, for the box of the frame lab. Captured packets become a dump of their streams,
+ * and other bytes a dump; a text file does not change. Throws `Refusal`.
  */
 export function readFile(bytes: Uint8Array, heads: Heads): string {
   if (bytes.length > FILE_LIMIT) refuse('文件太大，请截取一部分。', 'This file is too large. Take a part of it.')
@@ -180,7 +180,7 @@ export function readFile(bytes: Uint8Array, heads: Heads): string {
   return written
 }
 
-/** The text in the bytes, in UTF-8 or, as PowerShell writes it, in UTF-16; `null` if they are none. */
+/** Returns the text in the bytes, in UTF-8 or, as PowerShell writes it, in UTF-16; `null` if they are not text. */
 function textOf(bytes: Uint8Array): string | null {
   const wide = bytes[0] === 0xff && bytes[1] === 0xfe
   try {
@@ -191,7 +191,7 @@ function textOf(bytes: Uint8Array): string | null {
   }
 }
 
-/** A dump of streams, each indented by its number, as Wireshark shows the two sides of a connection. */
+/** Returns a dump of streams, each indented by its number, as Wireshark shows the two sides of a connection. */
 function dumpOf(segments: Segment[]): string {
   const at = new Map<number, number>()
   const lines: string[] = []
@@ -210,9 +210,9 @@ function dumpOf(segments: Segment[]): string {
 
 const ESCAPED: Record<string, number> = { n: 10, r: 13, t: 9, a: 7, b: 8, f: 12, v: 11, '\\': 92, '"': 34, "'": 39 }
 
-/** The bytes of a string literal of C, Python or the shell; of several, one after the other. */
+/** Returns the bytes of a string literal of C, Python or the shell; several literals are joined. */
 function readString(source: string): Uint8Array {
-  // What stands in quotes; without quotes, all of it.
+  // The text in quotes, or all of it without quotes.
   const quoted = source.match(/"(?:[^"\\]|\\[^])*"|'(?:[^'\\]|\\[^])*'/g)?.map((literal) => literal.slice(1, -1))
   const bytes: number[] = []
   for (const literal of quoted ?? [source.replace(/\\?\s+/g, '')]) {
@@ -234,12 +234,12 @@ function readString(source: string): Uint8Array {
   return Uint8Array.from(bytes)
 }
 
-/** The lists in a text, with the words before each: between braces or brackets where there are any. */
+/** Returns the lists in a text with the words before each, between braces or brackets if there are any. */
 function listsOf(bare: string): { name: string; body: string }[] {
   const runs = bare.split(/[{}]/)
   const bodies = runs.length < 3 ? [{ name: '', body: bare }] : runs.flatMap((body, at) => (at % 2 === 1 ? [{ name: runs[at - 1], body }] : []))
   return bodies.flatMap(({ name, body }) => {
-    // Words are in front of the brackets, as in `Uint8Array(60) [`, `type: 'Buffer', data: [` and `byteArrayOf(`.
+    // Words before the brackets, as in `Uint8Array(60) [`, `type: 'Buffer', data: [` and `byteArrayOf(`.
     const brackets = /\[([^[\]]*)\]|\(([^()]*)\)/g
     if (!/[A-WYZa-wyz]{2}/.test(body.replace(brackets, ' '))) return [{ name, body }]
     const lists = Array.from(body.matchAll(brackets), ([, square, round]) => square ?? round)
@@ -248,14 +248,14 @@ function listsOf(bare: string): { name: string; body: string }[] {
   })
 }
 
-/** Lists of numbers: arrays of C, Go, Rust, Java, Python, JavaScript. `null` if this is none. */
+/** Reads lists of numbers: arrays of C, Go, Rust, Java, Python, JavaScript. Returns `null` if there is none. */
 function readNumbers(source: string): Segment[] | null {
   const bare = source.replace(/\/\*[^]*?\*\//g, ' ').replace(/\/\/.*$/gm, ' ').replace(/\.\.\. *\d+ more items?|\(\s*(?:byte|unsigned char|uint8_t)\s*\)|\.toByte\(\)|(?<=0x[0-9a-f]{2})u8\b/gi, ' ')
   const segments: Segment[] = []
   for (const { name, body } of listsOf(bare)) {
     const tokens = body.replace(/[[\]();]/g, ' ').split(/[\s,]+/).filter(Boolean)
     const hex = tokens.some((token) => /^0x[0-9a-f]{1,2}$/i.test(token))
-    // Decimal only where nothing else fits: signs, or digits by another number than two.
+    // Decimal only if nothing else fits: signs, or numbers without exactly two digits.
     const separated = body.includes(',') || /^\s*\[[\d\s]+\]\s*$/.test(body)
     const decimal = separated && tokens.some((token) => /^(?:-\d+|\d{3})$/.test(token)) && tokens.every((token) => /^-?\d{1,3}$/.test(token))
     if (!hex && !decimal) {

@@ -1,14 +1,16 @@
-// Files of captured packets: pcap and pcapng, as tcpdump, Wireshark and apps of phones write them.
+// Files of captured packets: pcap and pcapng, as written by tcpdump, Wireshark and phone apps.
 
 import { readUint } from '../fc'
 
 type Order = 'big' | 'little'
 
-/** The first four bytes of a pcap file: of microseconds, nanoseconds, and of Kuznetzov's form with longer records. */
+/**
+ * The first four bytes of a pcap file: with microseconds, with nanoseconds, and Kuznetzov's form with longer records.
+ */
 const PCAP = [0xa1b2c3d4, 0xa1b23c4d, 0xa1b2cd34]
 const SECTION = 0x0a0d0d0a
 const SECTION_ORDER = 0x1a2b3c4d
-/** Blocks of pcapng that have packets, or what a packet needs. */
+/** Blocks of pcapng with packets, or with data that packets need. */
 const INTERFACE = 1
 const OLD_PACKET = 2
 const SIMPLE_PACKET = 3
@@ -30,8 +32,8 @@ const sectionOrder = (bytes: Uint8Array, at: number): Order | null => {
 const isPcapng = (bytes: Uint8Array) => bytes.length >= 28 && number(bytes, 0, 4, 'big') === SECTION && sectionOrder(bytes, 0) !== null
 
 /**
- * The packets of such a file, without the headers of their links; `null` for other bytes. A file that ends inside a
- * packet, as that of a capture that was killed, has the packets before it.
+ * Returns the packets of such a file, without their link headers; `null` for other bytes. A file that ends inside a
+ * packet gives the packets before it.
  */
 export function readCaptureFile(bytes: Uint8Array): Uint8Array[] | null {
   const order = pcapOrder(bytes)
@@ -85,14 +87,14 @@ function readPcapng(bytes: Uint8Array): Uint8Array[] {
   return packets
 }
 
-/** Ethernet and the headers of VLANs behind its addresses. */
+/** Skips the Ethernet header and the headers of VLANs after its addresses. */
 function behindEthernet(bytes: Uint8Array): Uint8Array {
   let at = 12
   while (at + 4 <= bytes.length && [0x8100, 0x88a8, 0x9100].includes(number(bytes, at, 2, 'big'))) at += 4
   return bytes.subarray(at + 2)
 }
 
-/** The IP packet in a frame of a link, by the numbers of `LINKTYPE_…`; of an unknown link the frame itself. */
+/** Returns the IP packet in a frame of a link, by the numbers of `LINKTYPE_…`; for an unknown link the whole frame. */
 function behindLink(link: number, bytes: Uint8Array): Uint8Array {
   switch (link) {
     case 1:

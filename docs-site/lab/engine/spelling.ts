@@ -1,8 +1,8 @@
-// Bytes as other programs take them.
+// Bytes in the forms of other programs.
 
 import { hexByte } from '../fc'
 
-/** A C array of the bytes, twelve to a line. */
+/** Returns a C array of the bytes, twelve to a line. */
 export function cArray(bytes: Uint8Array, name: string): string {
   const lines: string[] = []
   for (let at = 0; at < bytes.length; at += 12) {
@@ -11,7 +11,7 @@ export function cArray(bytes: Uint8Array, name: string): string {
   return `static const unsigned char ${name}[${bytes.length}] = {\n${lines.join(',\n')}\n};`
 }
 
-/** A shell line that sends the bytes with `nc` and shows the answer. */
+/** Returns a shell line that sends the bytes with `nc` and shows the response. */
 export function ncLine(bytes: Uint8Array, host: string, port: number): string {
   // Octal escapes: the only spelling that every POSIX printf knows.
   const escaped = Array.from(bytes, (byte) => `\\${byte.toString(8).padStart(3, '0')}`).join('')

@@ -1,10 +1,10 @@
-// What the laboratory holds, as text for the address of the page or for the tab: nothing of it goes
-// to a server, since a browser does not send what stands behind the `#`.
+// The state of the frame lab as text, for the page's address or for the tab. It never goes to a server, since a
+// browser does not send the part after `#`.
 
 import { deflateSync, inflateSync } from 'fflate'
 
 export interface LabState {
-  /** What was pasted, as it was pasted. */
+  /** The pasted text, unchanged. */
   paste: string
   operation: string
   side: 'request' | 'response'
@@ -14,12 +14,12 @@ export interface LabState {
   json: string | null
 }
 
-/** Longer addresses are cut by some programs through which links are sent. */
+/** Some programs that send links cut longer addresses. */
 export const LINK_LIMIT = 4000
 
 const MARK = 'lab='
 
-/** The part of an address behind `#`, whatever its length. */
+/** Returns the part of an address after `#`, of any length. */
 export function toHash(state: LabState): string {
   const { paste, operation, side, id, gzip, json } = state
   const packed = deflateSync(new TextEncoder().encode(JSON.stringify([paste, operation, side, id, gzip, json])))
@@ -28,10 +28,10 @@ export function toHash(state: LabState): string {
   return MARK + btoa(binary).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '')
 }
 
-/** The bytes of one frame in an address, as the frames of other pages link to the laboratory. */
+/** The bytes of one frame in an address, as other pages link to the frame lab. */
 const FRAME = /^hex=((?:[0-9a-f]{2})+)$/i
 
-/** The state in such a part, with or without its `#`; `null` if it has none. */
+/** Returns the state in such a part, with or without its `#`; `null` if it has none. */
 export function fromHash(hash: string): LabState | null {
   const text = hash.replace(/^#/, '')
   const frame = FRAME.exec(text)?.[1]
@@ -44,7 +44,7 @@ export function fromHash(hash: string): LabState | null {
     const sound =
       typeof paste === 'string' && typeof operation === 'string' && (side === 'request' || side === 'response') &&
       typeof gzip === 'boolean' && (json === null || typeof json === 'string')
-    // An emptied box holds no number, and must not take with it what was pasted.
+    // An emptied box has no number, and must not discard the pasted text.
     return sound ? { paste, operation, side, id: typeof id === 'number' ? id : 1, gzip, json } : null
   } catch {
     return null

@@ -20,7 +20,7 @@ export function indent(text: string): string {
   })
 }
 
-/** The text without comments outside strings, `null` if it has none. */
+/** Returns the text without comments outside strings; `null` if it has none. */
 export function withoutComments(text: string): string | null {
   let found = false
   const bare = text.replace(/("(?:[^"\\\n]|\\.)*")|[ \t]*\/\/[^\n]*|[ \t]*\/\*[^]*?\*\//g, (_, string) => {

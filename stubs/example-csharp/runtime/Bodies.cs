@@ -4,10 +4,10 @@ using System.Text;
 
 namespace FcRuntime
 {
-    /// <summary>An operation of the protocol, and what its two messages are.</summary>
+    /// <summary>An operation of the protocol, with the shapes of its two messages.</summary>
     public sealed class Operation
     {
-        /// <summary>What the spec says of it.</summary>
+        /// <summary>Creates an operation with its facts from the spec.</summary>
         public Operation(string name, string kind, uint? code, Shape request, Shape response)
         {
             Name = name;
@@ -23,20 +23,20 @@ namespace FcRuntime
         /// <summary><c>command</c>, <c>report</c> or <c>stream</c>.</summary>
         public string Kind { get; }
 
-        /// <summary>Its code; null while nobody knows it.</summary>
+        /// <summary>Its code; null if none is assigned.</summary>
         public uint? Code { get; }
 
-        /// <summary>The message that opens it; null where that is raw bytes.</summary>
+        /// <summary>The request's shape; null for raw bytes.</summary>
         public Shape Request { get; }
 
-        /// <summary>The answer or acknowledgement; null where there is none.</summary>
+        /// <summary>The shape of the response or acknowledgement; null for none.</summary>
         public Shape Response { get; }
     }
 
-    /// <summary>A message and the keys beside it that every message has.</summary>
+    /// <summary>An envelope and its message.</summary>
     public struct Opened<E, M>
     {
-        /// <summary>The keys that every request, or every response, has.</summary>
+        /// <summary>The keys of every request, or of every response.</summary>
         public E Envelope;
 
         /// <summary>The message of the operation.</summary>
@@ -46,11 +46,11 @@ namespace FcRuntime
     /// <summary>Bodies: JSON text in UTF-8.</summary>
     public static class Bodies
     {
-        /// <summary>UTF-8 without a mark at the front, which neither reads nor writes anything else.</summary>
+        /// <summary>UTF-8 without a byte order mark, for reading and writing.</summary>
         internal static readonly Encoding Utf8 = new UTF8Encoding(false, true);
 
         /// <summary>
-        /// Reads a body. Throws <see cref="Fault"/>; a fault of the envelope is named before one of the message.
+        /// Reads a body. Throws <see cref="Fault"/>. An error of the envelope comes before one of the message.
         /// </summary>
         public static Opened<E, M> Read<E, M>(Shape<E> envelope, Shape<M> message, byte[] body, int depth) where E : Message where M : Message
         {
@@ -58,7 +58,7 @@ namespace FcRuntime
             return new Opened<E, M> { Envelope = (E)opened.Envelope, Message = (M)opened.Message };
         }
 
-        /// <summary>The same where the types are known at run time alone.</summary>
+        /// <summary>Reads a body with types known only at run time.</summary>
         public static Opened<Message, Message> Read(Shape envelope, Shape message, byte[] body, int depth)
         {
             var json = Json.ParseBody(body, depth);
@@ -94,19 +94,19 @@ namespace FcRuntime
             return opened;
         }
 
-        /// <summary>The message of a body that has no envelope.</summary>
+        /// <summary>Reads a body without an envelope.</summary>
         public static Message Read(Shape message, byte[] body, int depth)
         {
             return message.ReadObject(Json.ParseBody(body, depth));
         }
 
-        /// <summary>Constants of the protocol, from the JSON of a list.</summary>
+        /// <summary>Reads constants of the protocol from a JSON list.</summary>
         public static IReadOnlyList<T> Constants<T>(Shape<T> row, string json) where T : Message
         {
             return Json.Parse(json).Items.Select(row.Parse).ToList();
         }
 
-        /// <summary>The body of an envelope and the message beside it.</summary>
+        /// <summary>Writes an envelope and a message.</summary>
         public static byte[] Write(Message envelope, Message message)
         {
             var to = new Output();

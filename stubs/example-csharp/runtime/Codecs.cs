@@ -4,26 +4,26 @@ using System.Globalization;
 
 namespace FcRuntime
 {
-    /// <summary>How the values of a type travel.</summary>
+    /// <summary>Reads and writes the values of a type.</summary>
     public abstract class Codec<T>
     {
-        /// <summary>Makes a value of JSON, or throws <see cref="Fault"/>.</summary>
+        /// <summary>Returns the value of JSON, or throws <see cref="Fault"/>.</summary>
         internal abstract T Read(Json json);
 
         /// <summary>Appends a value, or throws <see cref="Fault"/>.</summary>
         internal abstract void Write(T value, Output to);
 
-        /// <summary>Asks whether a value keeps to what its field demands. A list asks its items.</summary>
+        /// <summary>Checks a value against a constraint of its field. A list checks its items.</summary>
         internal virtual void Check(T value, Constraint constraint)
         {
             constraint.Ask(value);
         }
     }
 
-    /// <summary>How a number or bool travels that has another form than its type's own.</summary>
+    /// <summary>The form of a number or bool in JSON.</summary>
     public enum Form
     {
-        /// <summary>As its type does.</summary>
+        /// <summary>The form of its type.</summary>
         Plain,
 
         /// <summary>Inside a JSON string.</summary>
@@ -33,11 +33,11 @@ namespace FcRuntime
         Number
     }
 
-    /// <summary>The codecs of all types that the language of the spec has.</summary>
+    /// <summary>The codecs of all types in the spec language.</summary>
     public static class Codecs
     {
         /// <summary>
-        /// Integers, each type with its bounds. A lenient number may come in a string, and in hexadecimal.
+        /// Integers, each type with its range. A lenient number may be in a string, and in hexadecimal.
         /// </summary>
         public static Codec<sbyte> I8(Form form = Form.Plain, bool lenient = false) =>
             new Integers<sbyte>(sbyte.MinValue, sbyte.MaxValue, v => (sbyte)v, v => v, form, lenient);
@@ -70,15 +70,15 @@ namespace FcRuntime
         public static Codec<ulong> U64(Form form = Form.Plain, bool lenient = false) =>
             new Integers<ulong>(ulong.MinValue, ulong.MaxValue, v => (ulong)v, v => v, form, lenient);
 
-        /// <summary>Floats of 32 bits.</summary>
+        /// <summary>32-bit floats.</summary>
         public static Codec<float> F32(Form form = Form.Plain, bool lenient = false) =>
             new Floats<float>(Numbers.Single, Numbers.Spell, v => float.IsNaN(v) || float.IsInfinity(v), form, lenient);
 
-        /// <summary>Floats of 64 bits.</summary>
+        /// <summary>64-bit floats.</summary>
         public static Codec<double> F64(Form form = Form.Plain, bool lenient = false) =>
             new Floats<double>(Numbers.Double, Numbers.Spell, v => double.IsNaN(v) || double.IsInfinity(v), form, lenient);
 
-        /// <summary>Bools. A lenient one may come in any form.</summary>
+        /// <summary>Bools. A lenient one may have any form.</summary>
         public static Codec<bool> Bool(Form form = Form.Plain, bool lenient = false) => new Bools(form, lenient);
 
         /// <summary>Texts.</summary>
@@ -87,20 +87,22 @@ namespace FcRuntime
         /// <summary>Bytes, as padded base64 of the standard alphabet.</summary>
         public static Codec<byte[]> Base64 { get; } = new Base64();
 
-        /// <summary>Any JSON, kept as it is spelled.</summary>
+        /// <summary>Any JSON, with its spelling.</summary>
         public static Codec<Json> Any { get; } = new Anything();
 
         /// <summary>Lists.</summary>
         public static Codec<IList<T>> List<T>(Codec<T> item) => new Lists<T>(item);
 
-        /// <summary>Enums: what each value is on the wire, and whether there may be others.</summary>
+        /// <summary>
+        /// Enums: the value of each constant in JSON, and the known values. A closed enum takes no others.
+        /// </summary>
         public static Codec<E> Enum<E, W>(Codec<W> wire, Func<W, E> of, Func<E, W> to, bool isClosed, params W[] known) =>
             new Enums<E, W>(wire, of, to, isClosed, known);
 
-        /// <summary>Objects. Their shape is asked for when it is needed: it may be made after this.</summary>
+        /// <summary>Objects. Their shape is looked up on use, since it may be created later.</summary>
         public static Codec<T> Object<T>(Func<Shape<T>> shape) where T : Message => new Objects<T>(shape);
 
-        /// <summary>Choices: an object of the first of these forms whose required keys are all there.</summary>
+        /// <summary>Choices: the first form whose required keys are all present applies.</summary>
         public static Codec<T> Choice<T>(params Func<Shape>[] variants) where T : class => new Choices<T>(variants);
     }
 
@@ -115,7 +117,7 @@ namespace FcRuntime
             this.lenient = lenient;
         }
 
-        /// <summary>The spelling of a number in the form of its field.</summary>
+        /// <summary>Returns the spelling of a number in the form of its field.</summary>
         private string Spelling(Json json)
         {
             if (json.Is == Json.Kind.Number && (lenient || form != Form.String))
@@ -261,7 +263,7 @@ namespace FcRuntime
 
     internal sealed class Texts : Codec<string>
     {
-        /// <summary>What a string holds, if that is Unicode.</summary>
+        /// <summary>Returns the content of a string. Half of a surrogate pair is an error.</summary>
         internal static string Checked(Json json)
         {
             if (json.Is != Json.Kind.Text)
@@ -295,7 +297,7 @@ namespace FcRuntime
             try
             {
                 var bytes = Convert.FromBase64String(text);
-                // The library passes over white space and bits that say nothing.
+                // The library ignores white space and spare bits.
                 if (Convert.ToBase64String(bytes) == text)
                 {
                     return bytes;
@@ -303,7 +305,7 @@ namespace FcRuntime
             }
             catch (FormatException)
             {
-                // Named below.
+                // The error is thrown below.
             }
             throw new Fault(Faults.BadBase64, "padded base64 of the standard alphabet is wanted");
         }

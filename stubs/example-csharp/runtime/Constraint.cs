@@ -5,8 +5,8 @@ using System.Text.RegularExpressions;
 namespace FcRuntime
 {
     /// <summary>
-    /// What a field demands of its values beyond their type: asked when the whole object has been read, and before it
-    /// is written.
+    /// A constraint of a field on its values, in addition to the type. It is checked after reading the whole object,
+    /// and before writing it.
     /// </summary>
     public sealed class Constraint
     {
@@ -22,11 +22,11 @@ namespace FcRuntime
             IsOfTheWhole = isOfTheWhole;
         }
 
-        /// <summary>Whether it is asked of a list itself, and not of its items.</summary>
+        /// <c>true</c> if it applies to a list itself, not to its items.
         internal bool IsOfTheWhole { get; }
 
         /// <summary>
-        /// Throws <see cref="Fault"/> if it does not hold of a value, as it travels: a number, text, bytes, or the
+        /// Throws <see cref="Fault"/> if a value breaks the constraint. The value is a number, a text, bytes, or the
         /// length of a list.
         /// </summary>
         internal void Ask(object value)
@@ -65,7 +65,7 @@ namespace FcRuntime
 
         internal static Constraint Pattern(string pattern)
         {
-            // In this mode `\d` and its like mean ASCII, as they do in the spec.
+            // In this mode `\d` and similar classes match only ASCII, as in the spec.
             var whole = new Regex("^(?:" + pattern + ")(?!\n)$", RegexOptions.ECMAScript);
             var wanted = "the text must match `" + pattern + "` as a whole";
             return new Constraint(Faults.BadPattern, wanted, value => whole.IsMatch((string)value));
@@ -77,7 +77,7 @@ namespace FcRuntime
             return new Constraint(Faults.OutOfRange, wanted, value => values.Contains(value));
         }
 
-        /// <summary>How many characters of Unicode a text has: a surrogate pair is one.</summary>
+        /// <summary>Returns the number of Unicode characters in a text: a surrogate pair is one.</summary>
         private static int Characters(string text)
         {
             return text.Count(unit => !char.IsLowSurrogate(unit));

@@ -2,10 +2,10 @@ using System;
 
 namespace FcRuntime
 {
-    /// <summary>What is wrong with a frame or a body: one of the names that all languages share, and where.</summary>
+    /// <summary>The error of a frame or a body: a name shared by all languages, and a place.</summary>
     public sealed class Fault : Exception
     {
-        /// <summary>A fault of this name, one of <see cref="Faults"/>. The path grows on the way out.</summary>
+        /// <summary>Creates the error with a name of <see cref="Faults"/>. The path grows on the way out.</summary>
         public Fault(string name, string detail) : base(detail)
         {
             Name = name;
@@ -16,12 +16,11 @@ namespace FcRuntime
         public string Name { get; }
 
         /// <summary>
-        /// The wire keys down to the place, such as <c>data.stations[3].x</c>; empty for a frame and for the body as a
-        /// whole.
+        /// The keys down to the place, such as <c>data.stations[3].x</c>; empty for a frame and for the body itself.
         /// </summary>
         public string Path { get; private set; }
 
-        /// <summary>The same fault, one key further out.</summary>
+        /// <summary>Returns the same error, with its path prefixed by a key.</summary>
         public Fault Inside(string key)
         {
             var isWithin = Path.Length == 0 || Path[0] == '[';
@@ -29,14 +28,14 @@ namespace FcRuntime
             return this;
         }
 
-        /// <summary>The same fault, one item of a list further out.</summary>
+        /// <summary>Returns the same error, with its path prefixed by an index.</summary>
         public Fault Inside(int index)
         {
             return Inside("[" + index + "]");
         }
     }
 
-    /// <summary>The names of faults, as <c>conformance/errors.json</c> has them.</summary>
+    /// <summary>The names of errors, as in <c>conformance/errors.json</c>.</summary>
     public static class Faults
     {
 #pragma warning disable 1591 // Each says in conformance/errors.json what it means.

@@ -5,10 +5,10 @@ using System.Security.Cryptography;
 
 namespace FcRuntime
 {
-    /// <summary>What a field of the header is for.</summary>
+    /// <summary>Role of a header field.</summary>
     public enum HeaderRole
     {
-        /// <summary>Sent as its value and not interpreted.</summary>
+        /// <summary>Sent with its value, and not interpreted.</summary>
         None,
 
         /// <summary>The bytes that open a frame.</summary>
@@ -23,10 +23,10 @@ namespace FcRuntime
         /// <summary>Ties a response to its request.</summary>
         Id,
 
-        /// <summary>Whether the data is compressed.</summary>
+        /// <summary>Encoding of the data: plain or compressed.</summary>
         Encoding,
 
-        /// <summary>Sent as its value and not interpreted.</summary>
+        /// <summary>Sent with its value, and not interpreted.</summary>
         Status,
 
         /// <summary>Header and data as sent, in bytes.</summary>
@@ -39,7 +39,7 @@ namespace FcRuntime
         Digest
     }
 
-    /// <summary>A field of the header: place and length in bytes, and what it holds if nothing else.</summary>
+    /// <summary>A field of the header: place and length in bytes, and its default value.</summary>
     public struct HeaderField
     {
 #pragma warning disable 1591
@@ -50,7 +50,7 @@ namespace FcRuntime
 #pragma warning restore 1591
     }
 
-    /// <summary>What a protocol says of its frames.</summary>
+    /// <summary>The layout of a protocol's frames.</summary>
     public sealed class Layout
     {
 #pragma warning disable 1591
@@ -60,16 +60,16 @@ namespace FcRuntime
         public byte[] ResponseHead;
 
         /// <summary>
-        /// Kinds of frames by their numbers: <c>command</c>, <c>report</c>, <c>stream</c> or <c>reserved</c>.
+        /// Kinds of frames by number: <c>command</c>, <c>report</c>, <c>stream</c> or <c>reserved</c>.
         /// </summary>
         public Dictionary<ulong, string> Kinds;
 
         public ulong Plain;
 
-        /// <summary>The encoding of compressed frames; null where there are none.</summary>
+        /// <summary>The encoding of compressed frames; null for none.</summary>
         public ulong? Gzip;
 
-        /// <summary>Whether a plain frame may say 0 for the length of its data.</summary>
+        /// <c>true</c> if an uncompressed frame may have 0 as the length of its data.
         public bool IsZeroWhenPlain;
 
         /// <summary><c>md5</c> or <c>crc32</c>, if there is a digest.</summary>
@@ -83,7 +83,7 @@ namespace FcRuntime
         /// <summary>Length of the header in bytes.</summary>
         public int HeaderBytes => Header.Sum(field => field.Size);
 
-        /// <summary>The number of the frames that are commands, reports or streams.</summary>
+        /// <summary>Returns the number of the kind: command, report or stream.</summary>
         public ulong KindOf(string role)
         {
             return Kinds.First(kind => kind.Value == role).Key;
@@ -128,7 +128,7 @@ namespace FcRuntime
         }
     }
 
-    /// <summary>A frame: the fields of its header that mean something, and its data, decompressed.</summary>
+    /// <summary>A frame: the header fields with a role, and the decompressed data.</summary>
     public sealed class Frame
     {
 #pragma warning disable 1591
@@ -139,15 +139,15 @@ namespace FcRuntime
         public byte[] Data;
 #pragma warning restore 1591
 
-        /// <summary>Bytes that any frame may become when it is unpacked.</summary>
+        /// <summary>Up to this many plain bytes, any compression ratio is allowed.</summary>
         private const long FreelyInflated = 1 << 20;
 
-        /// <summary>How many times its length a longer one may have.</summary>
+        /// <summary>Greatest compression ratio of longer data.</summary>
         private const long MostInflated = 256;
 
         /// <summary>
-        /// Reads the frame at the front of the input. Throws <see cref="Fault"/>; the order of the checks is part of
-        /// the protocol.
+        /// Reads the first frame of the input. Throws <see cref="Fault"/>. The order of the checks is part of the
+        /// protocol.
         /// </summary>
         public static Frame Decode(Layout layout, byte[] input)
         {
@@ -212,7 +212,7 @@ namespace FcRuntime
                 {
                     throw new Fault(Faults.InflatedTooLong, plainLength + " bytes; at most " + layout.InflatedBytes);
                 }
-                // A limit of our own: what is not a stream does not become so much larger.
+                // A limit of this runtime on the compression ratio of all frames except streams.
                 if (kind != "stream" && plainLength > Math.Max(FreelyInflated, MostInflated * (long)frame.Data.Length))
                 {
                     throw new Fault(Faults.InflatesTooMuch, frame.Data.Length + " bytes would become " + plainLength);
@@ -230,7 +230,9 @@ namespace FcRuntime
             return frame;
         }
 
-        /// <summary>The bytes of the frame, compressed or not. Throws <see cref="Fault"/> if it is too long.</summary>
+        /// <summary>
+        /// Returns the bytes of the frame, compressed or not. Throws <see cref="Fault"/> if it is too long.
+        /// </summary>
         public byte[] Encode(Layout layout, bool isPacked = false)
         {
             if (isPacked && layout.Gzip == null)
@@ -277,7 +279,7 @@ namespace FcRuntime
             }
         }
 
-        /// <summary>Whether the input begins with a head, as far as there is any.</summary>
+        /// <summary>Returns <c>true</c> if the input begins with a head, or with a part of one.</summary>
         private static bool Begins(byte[] input, byte[] head)
         {
             return input.Take(head.Length).SequenceEqual(head.Take(input.Length));

@@ -6,16 +6,16 @@ using System.Linq;
 namespace FcRuntime
 {
     /// <summary>
-    /// One gzip member (RFC 1952), strictly. The streams of the library pass over what follows it and, some of them,
-    /// over its checksum.
+    /// Reads and writes one gzip member (RFC 1952), strictly. The library's streams ignore bytes after it, and some
+    /// ignore its checksum.
     /// </summary>
     internal static class GzipMember
     {
         private const int Trailer = 8;
 
         /// <summary>
-        /// What a member holds. Throws <see cref="Fault"/> for anything but exactly one, and as soon as it gives more
-        /// bytes than this.
+        /// Returns the content of a member. Throws <see cref="Fault"/> for anything except exactly one member, and once
+        /// the content exceeds <c>most</c> bytes.
         /// </summary>
         internal static byte[] Unpack(byte[] member, long most)
         {
@@ -51,7 +51,7 @@ namespace FcRuntime
         internal static byte[] Pack(byte[] data)
         {
             var member = new MemoryStream();
-            // Deflate; no flags, no time, of an unknown system.
+            // Deflate, without flags or time, of an unknown system.
             member.Write(new byte[] { 0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255 }, 0, 10);
             using (var deflater = new DeflateStream(member, CompressionMode.Compress, true))
             {
@@ -59,7 +59,7 @@ namespace FcRuntime
             }
             if (member.Length == 10)
             {
-                // Of nothing, some libraries write nothing: the empty block.
+                // For empty data some libraries write nothing: write the empty block.
                 member.Write(new byte[] { 3, 0 }, 0, 2);
             }
             foreach (var number in new[] { Crc(data), (uint)data.Length })
@@ -94,7 +94,7 @@ namespace FcRuntime
             return bytes[at] | (uint)bytes[at + 1] << 8 | (uint)bytes[at + 2] << 16 | (uint)bytes[at + 3] << 24;
         }
 
-        /// <summary>Where the compressed data begins.</summary>
+        /// <summary>Returns the start of the compressed data.</summary>
         private static int Header(byte[] member)
         {
             const int shortest = 10 + Trailer;
@@ -108,7 +108,7 @@ namespace FcRuntime
             {
                 at += 2 + member[at] + 256 * member[at + 1];
             }
-            // A name and a comment, each with a zero at its end.
+            // A name and a comment, each ended by a zero byte.
             for (var flag = 8; flag <= 16; flag *= 2)
             {
                 while ((flags & flag) != 0 && at < member.Length && member[at++] != 0)
@@ -120,7 +120,7 @@ namespace FcRuntime
         }
 
         /// <summary>
-        /// Gives the last byte alone and notices who asks for more, so that it is known where the compressed data ends.
+        /// Returns the last byte separately and notes any read after it. This shows if the compressed data ends there.
         /// </summary>
         private sealed class Metered : Stream
         {
@@ -136,7 +136,7 @@ namespace FcRuntime
                 at = start;
             }
 
-            /// <summary>Whether the compressed data ended exactly where it should.</summary>
+            /// <c>true</c> if the compressed data ended exactly at its last byte.
             internal bool IsUsedUp => at == end && !isAskedForMore;
 
             public override int Read(byte[] buffer, int offset, int count)

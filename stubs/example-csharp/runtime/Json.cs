@@ -4,7 +4,7 @@ using System.Text;
 
 namespace FcRuntime
 {
-    /// <summary>What a JSON text is read into: numbers keep their spelling, and a key may come twice.</summary>
+    /// <summary>The value of a JSON text. Numbers keep their spelling, and keys may be repeated.</summary>
     public sealed class Json
     {
         internal enum Kind
@@ -28,20 +28,20 @@ namespace FcRuntime
 
         internal Kind Is { get; }
 
-        /// <summary>A number as it is spelled, or what a string holds.</summary>
+        /// <summary>The spelling of a number, or the content of a string.</summary>
         internal string Spelled { get; }
 
         internal List<Json> Items { get; }
 
         internal List<KeyValuePair<string, Json>> Entries { get; }
 
-        /// <summary>Whether it is null, or an empty text, list or object.</summary>
+        /// <c>true</c> for null and for an empty text, list or object.
         internal bool IsEmpty =>
             Is == Kind.Null || Is == Kind.Text && Spelled.Length == 0
             || Is == Kind.List && Items.Count == 0 || Is == Kind.Object && Entries.Count == 0;
 
         /// <summary>
-        /// The value of a text. Throws <see cref="Fault"/> if it is not JSON, or nested deeper than this many levels.
+        /// Reads a text. Throws <see cref="Fault"/> if it is not JSON, or nested deeper than <c>depth</c> levels.
         /// </summary>
         public static Json Parse(string text, int depth = 64)
         {
@@ -49,7 +49,7 @@ namespace FcRuntime
         }
 
         /// <summary>
-        /// The object that a body holds; no bytes stand for one without keys. Throws <see cref="Fault"/>.
+        /// Reads the object in a body. An empty body means one without keys. Throws <see cref="Fault"/>.
         /// </summary>
         public static Json ParseBody(byte[] body, int depth)
         {
@@ -74,7 +74,7 @@ namespace FcRuntime
             return read;
         }
 
-        /// <summary>Its compact text; numbers as they were spelled.</summary>
+        /// <summary>Returns the compact text, with the spelling of its numbers.</summary>
         public override string ToString()
         {
             var text = new Output();
@@ -132,7 +132,7 @@ namespace FcRuntime
         }
 
         /// <summary>
-        /// A text in quotes. Half of a surrogate pair, which may have been kept, is escaped: UTF-8 has no bytes for it.
+        /// Appends a text in quotes. A kept half of a surrogate pair is escaped: UTF-8 has no bytes for it.
         /// </summary>
         internal static void WriteText(string text, Output to)
         {
@@ -156,7 +156,7 @@ namespace FcRuntime
             to.Append('"');
         }
 
-        /// <summary>Whether a text holds half of a surrogate pair, and so is not Unicode.</summary>
+        /// <summary>Returns <c>true</c> if a text has half of a surrogate pair, so it is not Unicode.</summary>
         internal static bool HasHalf(string text)
         {
             for (var at = 0; at < text.Length; at++)
@@ -189,7 +189,7 @@ namespace FcRuntime
             IsForLogs = isForLogs;
         }
 
-        /// <summary>Whether what is sensitive is left out, and nothing is demanded of the values.</summary>
+        /// <c>true</c> to leave out sensitive values, and to skip checks.
         internal bool IsForLogs { get; }
 
         internal Output Append(string more)
@@ -210,7 +210,7 @@ namespace FcRuntime
         }
     }
 
-    /// <summary>Reads JSON (RFC 8259) and nothing beside it, and goes no deeper than a limit.</summary>
+    /// <summary>Reads strict JSON (RFC 8259), with a limit on nesting.</summary>
     internal sealed class JsonReader
     {
         private readonly string text;
@@ -232,7 +232,7 @@ namespace FcRuntime
             return at == text.Length ? value : throw Bad("more behind the value");
         }
 
-        /// <summary>The unit here; 0, which no JSON has outside strings, at the end.</summary>
+        /// <summary>The present UTF-16 unit; at the end 0, which JSON allows only in strings.</summary>
         private char Here => at < text.Length ? text[at] : '\0';
 
         private Fault Bad(string detail)
@@ -377,7 +377,7 @@ namespace FcRuntime
             return read.ToString();
         }
 
-        /// <summary>The unit that an escape stands for; stays on the last character of it.</summary>
+        /// <summary>Returns the unit of an escape, and stops at its last character.</summary>
         private char Escaped()
         {
             at++;

@@ -7,12 +7,12 @@ namespace FcRuntime
     /// <summary>An object of the protocol.</summary>
     public abstract class Message
     {
-        /// <summary>Keys that the protocol does not know, in their order; kept, and sent again unchanged.</summary>
+        /// <summary>Keys that the protocol does not declare, in their order; kept, and sent again unchanged.</summary>
         public IList<KeyValuePair<string, Json>> Extra { get; internal set; } = new List<KeyValuePair<string, Json>>();
 
         internal abstract Shape ShapeOfThis { get; }
 
-        /// <summary>Its compact JSON text. Throws <see cref="Fault"/> if a constraint does not hold.</summary>
+        /// <summary>Returns the compact JSON text. Throws <see cref="Fault"/> if a constraint does not hold.</summary>
         public string ToJson()
         {
             var to = new Output();
@@ -20,9 +20,7 @@ namespace FcRuntime
             return to.ToString();
         }
 
-        /// <summary>
-        /// Like <see cref="ToJson"/>, for logs: what is sensitive is left out, and nothing is demanded of the values.
-        /// </summary>
+        /// <summary>Returns JSON text for logs, without sensitive values and without checks.</summary>
         public override string ToString()
         {
             var to = new Output(true);
@@ -38,7 +36,7 @@ namespace FcRuntime
         }
     }
 
-    /// <summary>A message of whose own keys nothing is known.</summary>
+    /// <summary>A message without declared keys.</summary>
     public sealed class Nothing : Message
     {
         internal static readonly Shape<Nothing> Shape = new Shape<Nothing>(() => new Nothing());
@@ -46,7 +44,7 @@ namespace FcRuntime
         internal override Shape ShapeOfThis => Shape;
     }
 
-    /// <summary>The fields of a type of messages, whichever type that is.</summary>
+    /// <summary>The fields of a type of messages, for any type.</summary>
     public abstract class Shape
     {
         internal abstract Reading Begin();
@@ -77,25 +75,25 @@ namespace FcRuntime
             return reading.End();
         }
 
-        /// <summary>A key is text, whether the message knows it or not.</summary>
+        /// <summary>Checks a key's text, declared or not.</summary>
         internal static void CheckKey(string key)
         {
             Texts.Checked(key);
         }
     }
 
-    /// <summary>A message that is being read, key after key.</summary>
+    /// <summary>A message being read, key by key.</summary>
     internal abstract class Reading
     {
         internal abstract bool Knows(string key);
 
         internal abstract void Take(string key, Json json);
 
-        /// <summary>The message, if nothing is missing and all constraints hold.</summary>
+        /// <summary>Returns the message. Checks for missing fields and broken constraints.</summary>
         internal abstract Message End();
     }
 
-    /// <summary>The fields of a type of messages: reader, writer and constraints are made of them.</summary>
+    /// <summary>The fields of a type of messages, as the source of its reader, writer and constraints.</summary>
     public sealed class Shape<T> : Shape where T : Message
     {
         private readonly Func<T> make;
@@ -126,7 +124,7 @@ namespace FcRuntime
 
         private Field<T> Last => fields[fields.Count - 1];
 
-        /// <summary>Another key under which the last field is accepted.</summary>
+        /// <summary>Adds another key that the last field accepts.</summary>
         internal Shape<T> Also(string key)
         {
             byKey.Add(key, fields.Count - 1);

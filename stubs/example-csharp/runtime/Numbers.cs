@@ -4,17 +4,16 @@ using System.Numerics;
 
 namespace FcRuntime
 {
-    /// <summary>
-    /// Numbers of JSON, exactly: an integer stays one whatever its spelling, a float is the nearest of its type.
-    /// </summary>
+    /// <summary>Exact numbers of JSON: an integer in any spelling, and the nearest float of a type.</summary>
     internal static class Numbers
     {
         /// <summary>
-        /// More significant digits decide nothing but whether a number is exactly half-way between two floats.
+        /// Greatest number of digits that matter. More digits only decide if a number is exactly half-way between two
+        /// floats.
         /// </summary>
         private const int ManyDigits = 800;
 
-        /// <summary>An exponent beyond all types. It may still stand behind a zero.</summary>
+        /// <summary>An exponent beyond all types. It may still follow a zero.</summary>
         private const int FarExponent = 100000;
 
         /// <summary>A number that no integer type has.</summary>
@@ -25,14 +24,14 @@ namespace FcRuntime
             return digit > 'f' ? -1 : "0123456789abcdef".IndexOf(char.ToLowerInvariant(digit));
         }
 
-        /// <summary>Where the number ends that begins here; where it begins, if none does.</summary>
+        /// <summary>Returns the end of the number that begins here, or <c>start</c> if none does.</summary>
         internal static int End(string text, int start)
         {
             var at = start < text.Length && text[start] == '-' ? start + 1 : start;
             var whole = Digits(text, at);
             if (whole == at || text[at] == '0' && whole > at + 1)
             {
-                // A number goes on with no digit behind a leading zero; the reader finds it there.
+                // No digit may follow a leading zero; the reader reports it there.
                 return whole == at ? start : at + 1;
             }
             at = whole;
@@ -63,10 +62,7 @@ namespace FcRuntime
             return at;
         }
 
-        /// <summary>
-        /// A number as its sign, its digits without zeros at either end, and the power of ten that they are multiplied
-        /// by.
-        /// </summary>
+        /// <summary>A number as its sign, its digits without zeros at either end, and a power of ten.</summary>
         private struct Parts
         {
             internal bool IsNegative;
@@ -95,8 +91,8 @@ namespace FcRuntime
         }
 
         /// <summary>
-        /// The integer that a number amounts to, or null for a fraction. What no type can hold comes out as something
-        /// that none can.
+        /// Returns the integer value of a number, or null for a fraction. A value beyond all types gives another one
+        /// beyond all types.
         /// </summary>
         internal static decimal? Integral(string text)
         {
@@ -114,7 +110,7 @@ namespace FcRuntime
             return parts.IsNegative ? -value : value;
         }
 
-        /// <summary>The number that <c>0x…</c> stands for; null for any other text.</summary>
+        /// <summary>Returns the number of a text <c>0x…</c>; null for any other text.</summary>
         internal static decimal? Hexadecimal(string text)
         {
             if (text.Length < 3 || text[0] != '0' || char.ToLowerInvariant(text[1]) != 'x')
@@ -134,7 +130,7 @@ namespace FcRuntime
             return value;
         }
 
-        /// <summary>The nearest double; null where none is large enough.</summary>
+        /// <summary>Returns the nearest double; null if the number is too large.</summary>
         internal static double? Double(string text)
         {
             var parts = Parts.Of(text);
@@ -148,7 +144,8 @@ namespace FcRuntime
         }
 
         /// <summary>
-        /// The nearest float; null where none is large enough. By way of a double it would be rounded twice.
+        /// Returns the nearest 32-bit float; null if the number is too large. Through a double it would be rounded
+        /// twice.
         /// </summary>
         internal static float? Single(string text)
         {
@@ -163,7 +160,7 @@ namespace FcRuntime
             return parts.IsNegative ? -value : value;
         }
 
-        /// <summary>A double nearby, of which the last bits may be wrong: not every library parses exactly.</summary>
+        /// <summary>Returns a double nearby, perhaps with wrong last bits: not every library parses exactly.</summary>
         private static double Guess(Parts parts)
         {
             if (parts.Digits.Length == 0 || (long)parts.Digits.Length + parts.Power < -400)
@@ -187,7 +184,7 @@ namespace FcRuntime
         }
 
         /// <summary>
-        /// The bits of the float that is nearest to a number without its sign, from a guess; null beyond the largest.
+        /// Returns the bits of the float nearest to a number without its sign, from a guess; null beyond the largest.
         /// </summary>
         private static long? Nearest(Parts parts, long guess, int fraction, int bias)
         {
@@ -217,7 +214,7 @@ namespace FcRuntime
             {
                 bits--;
             }
-            // Half-way, the even one is taken.
+            // Half-way between two floats, the even one is the result.
             if (bits < beyond && bits % 2 == 1 && AgainstMiddle(exact, power, bits, fraction, bias) == 0)
             {
                 bits++;
@@ -244,13 +241,13 @@ namespace FcRuntime
             return left.CompareTo(right);
         }
 
-        /// <summary>The shortest text that is read as this number again.</summary>
+        /// <summary>Returns the shortest text that reads as this number.</summary>
         internal static string Spell(double value)
         {
             return Spell(value, 15, 17, text => Double(text) == Math.Abs(value));
         }
 
-        /// <summary>The shortest text that is read as this number again.</summary>
+        /// <summary>Returns the shortest text that reads as this number.</summary>
         internal static string Spell(float value)
         {
             return Spell(value, 6, 9, text => Single(text) == Math.Abs(value));
@@ -258,7 +255,7 @@ namespace FcRuntime
 
         private static string Spell(double value, int fewest, int most, Func<string, bool> isSame)
         {
-            // Of a negative zero, not every library writes the sign.
+            // Some libraries do not write the sign of negative zero.
             var sign = BitConverter.DoubleToInt64Bits(value) < 0 ? "-" : "";
             for (var digits = fewest; digits <= most; digits++)
             {

@@ -6,7 +6,7 @@ using FcRuntime;
 
 namespace FcTests
 {
-    /// <summary>What the files of the vectors hold, and how it is compared.</summary>
+    /// <summary>Reads the files of the vectors, and compares values.</summary>
     internal static class Given
     {
         internal static Json Read(string path)
@@ -14,7 +14,7 @@ namespace FcTests
             return Json.Parse(File.ReadAllText(path));
         }
 
-        /// <summary>The value under a key; null where there is none, or JSON's null.</summary>
+        /// <summary>Returns the value of a key; null for a missing key and for JSON's null.</summary>
         internal static Json Get(this Json json, string key)
         {
             var found = json.Entries.FirstOrDefault(entry => entry.Key == key).Value;
@@ -39,7 +39,9 @@ namespace FcTests
             }
         }
 
-        /// <summary>A text that two values have in common if they are equal, the order of keys and the spelling of numbers aside.</summary>
+        /// <summary>
+        /// Returns a text that is the same for equal values, with any order of keys and any spelling of numbers.
+        /// </summary>
         internal static string Sorted(Json json)
         {
             switch (json.Is)
@@ -56,7 +58,10 @@ namespace FcTests
             }
         }
 
-        /// <summary>An integer by its digits, whatever else by its nearest double, or as it is spelled if none is large enough.</summary>
+        /// <summary>
+        /// Returns an integer by its digits, and any other number by its nearest double, or by its spelling if it is
+        /// too large.
+        /// </summary>
         internal static string Number(string spelled)
         {
             var integral = Numbers.Integral(spelled);

@@ -5,7 +5,7 @@ using System.Linq;
 
 namespace FcTests
 {
-    /// <summary>Runs the golden frames, or judges frames from standard input.</summary>
+    /// <summary>Runs the golden frames, or decodes frames from standard input.</summary>
     public static class Program
     {
         /// <summary><c>vectors DIRECTORY CONFORMANCE</c> or <c>judge</c>.</summary>
@@ -29,7 +29,7 @@ namespace FcTests
         }
     }
 
-    /// <summary>Counts what held and says what did not.</summary>
+    /// <summary>Counts passed cases and prints failed ones.</summary>
     public sealed class Report
     {
         private readonly SortedDictionary<string, int> kinds = new SortedDictionary<string, int>();
@@ -37,8 +37,8 @@ namespace FcTests
         private int failed;
 
         /// <summary>
-        /// Runs one case. It holds if it gives what is expected: a text, or the name of a <see cref="FcRuntime.Fault"/>. It counts as of a
-        /// kind of <c>conformance/README.md</c>, if one is given.
+        /// Runs one case. It passes if its result is <c>expected</c>: a text, or the name of a <see
+        /// cref="FcRuntime.Fault"/>. It counts for <c>kind</c> of <c>conformance/README.md</c>, if given.
         /// </summary>
         public void Case(string kind, string name, string expected, Func<string> run)
         {
@@ -69,7 +69,8 @@ namespace FcTests
         }
 
         /// <summary>
-        /// Prints the figures, and adds a line <c>KIND NUMBER</c> for each kind to the file that FC_CONFORMANCE names, if it does. 0 if all held, and there were any.
+        /// Prints the figures. Appends a line <c>KIND NUMBER</c> for each kind to the file that FC_CONFORMANCE names.
+        /// Returns 0 if all cases passed and there was at least one.
         /// </summary>
         public int End()
         {

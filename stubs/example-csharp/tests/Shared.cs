@@ -6,13 +6,13 @@ using FcRuntime;
 
 namespace FcTests
 {
-    /// <summary>The names of faults are those that all languages share.</summary>
+    /// <summary>The names of errors are those that all languages share.</summary>
     internal static class Names
     {
         internal static void Run(string path, Report report)
         {
             var ours = typeof(Faults).GetFields().Select(field => (string)field.GetRawConstantValue()).ToList();
-            // A limit that is not everybody's has a name all the same.
+            // A limit of only some implementations has a name, too.
             var shared = Given.Read(path).Get("errors").Items.Where(error => error.Get("where").Spelled != "call");
             var wanted = shared.Where(error => error.Get("own_limit") == null || ours.Contains(error.Get("name").Spelled));
             var names = string.Join(" ", wanted.Select(error => error.Get("name").Spelled));
@@ -25,7 +25,7 @@ namespace FcTests
         }
     }
 
-    /// <summary>Of several faults in one body, the right one is named, with its place.</summary>
+    /// <summary>The first error of a body with several is reported, with its place.</summary>
     internal static class Order
     {
         internal static void Run(string path, Report report)
@@ -57,7 +57,10 @@ namespace FcTests
         }
     }
 
-    /// <summary>Says of each frame, one in hex on a line, what is made of it, as <c>fc-reflect/tests/it/judges.rs</c> asks.</summary>
+    /// <summary>
+    /// Decodes each frame, one in hex on a line, and prints the result as <c>fc-reflect/tests/it/judges.rs</c>
+    /// describes.
+    /// </summary>
     internal static class Judge
     {
         internal static void Run(System.IO.TextReader from, System.IO.TextWriter to)
@@ -94,7 +97,7 @@ namespace FcTests
                 var opened = Bodies.Read(envelope, shape ?? Nothing.Shape, frame.Data, Wire.Layout.JsonDepth);
                 message = Bodies.Utf8.GetString(Bodies.Write(opened.Envelope, opened.Message));
             }
-            // Of an operation that nobody knows, the body is looked at and given back as it is.
+            // The body of an unknown operation is checked and returned unchanged.
             var isMessage = message != null && operation != null;
             Texts(answer, isMessage ? "message" : "bytes");
             answer.Append(header);

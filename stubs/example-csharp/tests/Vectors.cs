@@ -7,7 +7,10 @@ using FcRuntime;
 
 namespace FcTests
 {
-    /// <summary>All golden frames: what is accepted is read as its type and written again, what is refused is so by its name.</summary>
+    /// <summary>
+    /// All golden frames: accepted ones are read with their type and written again, rejected ones give the error's
+    /// name.
+    /// </summary>
     internal static class Vectors
     {
         internal static void Run(string directory, Report report)
@@ -55,7 +58,7 @@ namespace FcTests
             }
         }
 
-        /// <summary>What a message is when it has been read as its type and is written again.</summary>
+        /// <summary>Returns a message that was read with its type and written again.</summary>
         private static byte[] Again(Operation operation, Json vector)
         {
             var isResponse = vector.Get("direction").Spelled == "response";
@@ -169,7 +172,7 @@ namespace FcTests
             }
         }
 
-        /// <summary>Floats, and the escapes of strings, may be spelled in several ways; nothing else may.</summary>
+        /// <summary>Returns the text with floats and string escapes in one spelling; all else must be equal.</summary>
         private static string Said(string text, bool isFloat)
         {
             var json = Json.Parse(text);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the plugin makes of other specs, and that the golden frames notice a runtime that does something else.
+"""The plugin's output for other specs. The golden frames must also notice errors in the runtime.
 
 It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and mono.
 """
@@ -18,7 +18,7 @@ ROOT = HERE.parents[1]
 FC = os.environ.get("FC", str(ROOT / "target/debug/fcproto"))
 ODD = [ROOT / "fc-generated/tests/odd/spec"]
 
-# What is broken on purpose: the file of the runtime, what stands there, and what is written instead.
+# Faults to inject: a file of the runtime, a text in it, and its replacement.
 BREAKS = [
     ("Numbers.cs", "isFar ? Far :", "isFar ? 7 :"),
     (
@@ -43,7 +43,7 @@ def run(*command, **env):
 
 
 class Project:
-    """A spec in a directory of its own, with the C# and the golden frames of it."""
+    """A spec in a separate directory, with its C# and its golden frames."""
 
     def __init__(self, *specs, here=HERE):
         self.folder = Path(tempfile.mkdtemp())
@@ -57,7 +57,7 @@ class Project:
         return run(str(self.here / "run"), "test", PROJECT=str(self.folder))
 
     def program(self, source):
-        """Compiles a program with the package; where it is, or what the compiler says."""
+        """Compiles a program with the package. Returns its path, or the compiler's output."""
         (self.folder / "Program.cs").write_text(source, encoding="utf-8")
         program = self.folder / "program.exe"
         status, said = run(
@@ -95,7 +95,7 @@ class OtherSpecs(unittest.TestCase):
             status, said = run("mono", str(program))
             wanted = 'measure_added {"mode":"slow","level":3,"word":"abc","secret":"AQ=="} {"mode":"slow","level":3,"word":"abc","secret":"…"}'
             self.assertEqual((status, said.strip()), (0, wanted))
-            # A field that has another name is noticed by whoever uses it.
+            # A renamed field is an error in a program that uses it.
             added.write_text(
                 added.read_text(encoding="utf-8").replace("      level: {", "      height: {"), encoding="utf-8"
             )
@@ -139,7 +139,7 @@ class Judge(unittest.TestCase):
         for path in sorted((ROOT / "fc-generated/vectors").glob("*.json")):
             vectors = json.loads(path.read_text(encoding="utf-8"))
             if vectors["operation"] is not None:
-                # The others are of no operation, and their bodies have no envelope.
+                # The others have no operation, and their bodies have no envelope.
                 asked += [(one["frame"], "") for one in vectors["accepted"] if "frame" in one]
             asked += [(one["frame"], one["error"]) for one in vectors["rejected"] if "frame" in one]
         with Project(ROOT / "spec") as project:

@@ -1,9 +1,9 @@
 using Fc;
 
-/// <summary>Uses what an owner has added.</summary>
+/// <summary>Uses the command that an owner has added.</summary>
 public static class Added
 {
-    /// <summary>A request and what a log would show of it.</summary>
+    /// <summary>Returns a request and its text for logs.</summary>
     public static string Measure()
     {
         var request = new MeasureAddedRequest(AddedMode.Event, level: 3) { Word = "abc", Secret = new byte[] { 1 } };

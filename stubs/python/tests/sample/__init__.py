@@ -21,7 +21,7 @@ from .robot import Reporter as Reporter
 from .robot import Robot as Robot
 from .robot import Streamer as Streamer
 
-# Type checkers go by the imports above: not all of them read an `__all__` that is made of others.
+# Type checkers use the imports above: not all of them read a computed `__all__`.
 if not TYPE_CHECKING:
     __all__ = [
         "SAMPLE",

@@ -7,6 +7,6 @@ from typing import TYPE_CHECKING
 from . import groups, operations
 from .groups import *
 
-# Type checkers go by the imports above: not all of them read an `__all__` that is made of others.
+# Type checkers use the imports above: not all of them read a computed `__all__`.
 if not TYPE_CHECKING:
     __all__ = [name for name in groups.__all__ if name not in operations.__all__]

@@ -9,6 +9,6 @@ import fc_runtime as rt
 from . import groups
 from .groups import *
 
-# Type checkers go by the imports above: not all of them read an `__all__` that is made of others.
+# Type checkers use the imports above: not all of them read a computed `__all__`.
 if not TYPE_CHECKING:
     __all__ = [name for name in groups.__all__ if isinstance(getattr(groups, name), rt.Command | rt.Report | rt.Stream)]

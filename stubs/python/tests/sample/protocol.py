@@ -25,7 +25,7 @@ class ResultCode(rt.Result):
 
 @dataclass(slots=True, kw_only=True)
 class RequestEnvelope(rt.Message):
-    """Beside every request and report."""
+    """The keys of every request and report, in addition to those of its body."""
 
     cmd_time: Annotated[rt.TimestampMs | None, rt.Key("cmdTime")] = None
     extra: rt.Extra = field(default_factory=rt.Extra)
@@ -33,7 +33,7 @@ class RequestEnvelope(rt.Message):
 
 @dataclass(slots=True, kw_only=True)
 class ResponseEnvelope(rt.Message):
-    """Beside every response and acknowledgement."""
+    """The keys of every response and acknowledgement, in addition to those of its body."""
 
     cmd_time: Annotated[rt.TimestampMs | None, rt.Key("cmdTime")] = None
     result_code: Annotated[rt.I32, rt.Key("resultCode")]

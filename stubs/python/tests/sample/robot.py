@@ -14,8 +14,8 @@ from .protocol import SAMPLE
 class Robot(BatteryHandlers, rt.Robot, ABC):
     """完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，类型检查器会指出。
 
-    A complete robot: it handles all commands of the spec. When the spec gains one, a method is missing here, and the
-    type checker says so, and Python when the robot is made.
+    A complete robot, which handles all commands of the spec. When the spec gains a command, the type checker reports
+    a missing method, and Python refuses to create the robot.
     """
 
     protocol: ClassVar[rt.Protocol] = SAMPLE
@@ -24,7 +24,7 @@ class Robot(BatteryHandlers, rt.Robot, ABC):
     async def pass_through(self, context: rt.Context, request: rt.RawRequest) -> rt.Json:
         """直接透传
 
-        Passed straight through. Codes 0x0500 to 0x05FF that have no method of their own.
+        Passed straight through. Codes 0x0500 to 0x05FF without a separate method.
         """
         raise NotImplementedError
 
@@ -32,14 +32,14 @@ class Robot(BatteryHandlers, rt.Robot, ABC):
 class PartialRobot(BatteryPartialHandlers, Robot):
     """有一部分指令的机器人：方法相同，都可以不写；没有写的指令以“未实现”拒绝。
 
-    A robot that has some of them so far: what is left out is refused as not implemented.
+    A robot with some of the commands. It refuses the others as not implemented.
     """
 
 
 class ExampleRobot(rt.ExampleRobot):
     """按规范的示例应答的演示机器人。
 
-    A robot that answers with the examples in the spec.
+    A robot that responds with the examples in the spec.
     """
 
     protocol: ClassVar[rt.Protocol] = SAMPLE

@@ -1,4 +1,4 @@
-"""The groups, each with a module of its own."""
+"""The groups, each in a separate module."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from . import battery
 from .battery import *
 
-# Type checkers go by the imports above: not all of them read an `__all__` that is made of others.
+# Type checkers use the imports above: not all of them read a computed `__all__`.
 if not TYPE_CHECKING:
     __all__ = [
         *battery.__all__,

@@ -70,7 +70,7 @@ class Phase(rt.State):
     def process(cls) -> rt.Process:
         """规范对各个状态的说明。
 
-        What the spec says of the values as states.
+        The description of these states in the spec.
         """
         return rt.Process(
             normal={cls.IDLE: [cls.DRIVING], cls.DRIVING: [cls.CHARGING]},
@@ -145,7 +145,7 @@ class DockRequest(rt.Message):
     __example__: ClassVar[str] = '{"dock":"A"}'
 
     DEFAULT_SPEED: ClassVar[int] = 3
-    """没有 `speed` 时的取值。What it is where there is no `speed`."""
+    """没有 `speed` 时的取值。The default of `speed`."""
 
     dock: Annotated[DockId, rt.Key("dock", length=(1, 8))]
     """充电桩
@@ -164,7 +164,7 @@ class DockRequest(rt.Message):
 
     @property
     def speed_or_default(self) -> int:
-        """速度；没有时为默认值。Speed, or its default where there is none."""
+        """速度；没有时为默认值。Speed, or its default."""
         return self.DEFAULT_SPEED if self.speed is None else self.speed
 
 
@@ -412,7 +412,7 @@ class BatterySyncCalls(rt.SyncCalls):
         Dock
 
         先取得响应，再逐个取得它引起的 `Docking`。
-        Gives the response, and then each `Docking` that it sets off.
+        Returns the response, and then each `Docking` that it sets off.
         """
         return self._follow(DOCK, DOCKING, request, timeout, repeat)
 
