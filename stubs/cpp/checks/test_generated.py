@@ -1,4 +1,4 @@
-"""What the generator makes of other specs than that of the package: an odd one, two small ones, and one that changes.
+"""Tests the packages of other specs: an odd one, two small ones, and one that changes.
 
 It needs the generator, built with `cargo build -p fc-cli` or named by `FC`, and g++ and clang-format.
 """
@@ -29,7 +29,7 @@ def run(*command: object, folder: Path | None = None) -> tuple[bool, str]:
 
 
 class Project:
-    """A spec in a folder of its own, with what is generated of it."""
+    """A spec in its own folder, with its generated package."""
 
     def __init__(self, name: str) -> None:
         self.folder = Path(tempfile.mkdtemp())
@@ -54,7 +54,7 @@ class Project:
         return run("g++", *STRICT, *include, *options, folder=self.folder)
 
     def sources(self, least: int) -> Path:
-        """All that has been generated as one source, which takes a compiler far less time."""
+        """Joins the generated sources into one file, which compiles much faster."""
         sources = sorted(self.generated.glob("src/**/*.cpp"))
         assert len(sources) >= least, sources
         path = self.folder / "sources.cpp"
@@ -66,7 +66,7 @@ class Project:
 
 
 class Package(unittest.TestCase):
-    """What is generated, with the runtime of this package."""
+    """The generated package, with the runtime of this package."""
 
     runtime: Path
 
@@ -82,7 +82,7 @@ class Package(unittest.TestCase):
         assert ok, text
 
     def package(self, project: Project, least: int) -> tuple[object, ...]:
-        """What has been generated and the runtime, for programs to be linked with."""
+        """Compiles the generated package, and returns it with the runtime for linking."""
         package = project.folder / "package.o"
         ok, text = project.compile("-c", project.sources(least), "-o", package)
         self.assertTrue(ok, text)
@@ -147,7 +147,7 @@ class Readme(unittest.TestCase):
 
 
 class Lockstep(unittest.TestCase):
-    """A change of the spec is an error where a program is compiled that has not followed."""
+    """A program that does not follow a change of the spec does not compile."""
 
     def setUp(self) -> None:
         self.project = Project("meter")

@@ -79,7 +79,9 @@ struct EnvelopeKey {
 
 /// A result code and its text.
 struct ResultText {
+  /// The result code.
   std::int64_t code = 0;
+  /// The text for people.
   std::string_view text;
 };
 

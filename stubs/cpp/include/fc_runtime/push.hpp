@@ -23,7 +23,7 @@ enum class AckOutcomeKind {
   Refused,       ///< The app responded with a result other than success.
   Invalid,       ///< The response of the app is not an acknowledgement.
   TimedOut,      ///< No acknowledgement arrived, in spite of all retries.
-  Dropped,       ///< The queue of a slow app was full, and newer reports took its place.
+  Dropped,       ///< The report was dropped for newer ones, because the app was slow.
   Closed,        ///< The connection ended first.
 };
 
@@ -48,7 +48,7 @@ enum class PushErrorKind {
   Invalid,       ///< The report breaks one of its constraints.
   Frame,         ///< The data does not fit into a frame.
   NoConnection,  ///< The connection is closed; for a stream: no data connection is open.
-  Ambiguous,     ///< Several apps share the address: the data connection matches none of them.
+  Ambiguous,     ///< Several apps share the address: the owner of the data connection is unknown.
 };
 
 /// The name of a kind, the same in every language.

@@ -46,7 +46,9 @@ struct Incoming {
 struct Due {
   /// `true`: send the request again with the same id. `false`: it has ended without a response.
   bool again = false;
+  /// The request.
   FrameId frame;
+  /// The token of the request.
   Token token = 0;
 };
 

@@ -31,7 +31,7 @@ public abstract class Codec<T : Any> internal constructor() {
     /** Returns the wire value, for comparison in conditions. */
     internal open fun wire(value: T): Any = value
 
-    /** Returns the number in the type of this codec. */
+    /** Returns the number, limited to the range of this type. */
     internal open fun nearest(number: Long): T = throw IllegalStateException("this type has no numbers")
 
     /** Reads the form inside a string. */

@@ -108,7 +108,7 @@ public class ClientConfig private constructor(from: ClientConfig?) {
     /** Turns the verification of digests of received frames on (the default) or off. */
     public fun verifyDigest(verify: Boolean): ClientConfig = with { verifyDigest = verify }
 
-    /** Searches for the next frame after invalid bytes, instead of closing the connection (the default). */
+    /** Searches for the next frame after invalid bytes. By default, the connection is closed. */
     public fun resync(resync: Boolean): ClientConfig = with { this.resync = resync }
 
     /** Takes the log lines of the connection. Unset: errors are printed to `System.err`. */
@@ -227,7 +227,7 @@ public class ServerConfig private constructor(from: ServerConfig?) {
     /** Turns the verification of digests of received frames on (the default) or off. */
     public fun verifyDigest(verify: Boolean): ServerConfig = with { verifyDigest = verify }
 
-    /** Searches for the next frame after invalid bytes, instead of closing the connection (the default). */
+    /** Searches for the next frame after invalid bytes. By default, the connection is closed. */
     public fun resync(resync: Boolean): ServerConfig = with { this.resync = resync }
 
     /** Longest time of a header, from its first byte to its last. */

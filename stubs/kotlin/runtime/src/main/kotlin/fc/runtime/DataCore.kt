@@ -163,7 +163,7 @@ internal class DataCore(private val commands: ClientCore, private val dial: Dial
     /** The frame that waits behind an abandoned one. */
     private var next: DataOut? = null
 
-    /** A loss after frames were sent, of which the sender does not know yet. */
+    /** A loss after frames were sent, not yet reported to the sender. */
     private var unsure: Loss? = null
 
     fun execute(task: () -> Unit) = loop.execute(task)

@@ -139,7 +139,7 @@ internal class DataPeer(private val server: ServerCore, link: Link, val id: Long
     private val pace = Pace()
     private var wasReading = true
 
-    /** The command connection that it belongs to: [NOBODY], one, or [SEVERAL]. */
+    /** The command connection that it belongs to, `NOBODY` or `SEVERAL`. */
     var owner = NOBODY
         private set
 

@@ -57,7 +57,7 @@ internal class Lines(log: Log?, protocol: Protocol?, private val now: () -> Long
         }
     }
 
-    /** Logs an exception that neither the runtime nor the protocol expects: [what] has failed. */
+    /** Logs an unexpected exception, with [what] as its context. */
     fun failed(what: String, error: Throwable, called: Any? = null, cause: String = what): Unit =
         say(LogLevel.ERROR, cause) { "$what: ${thrown.describe(error, called)}" }
 

@@ -70,7 +70,9 @@ public abstract class Protocol {
 
 /** A result code and its text. */
 public class ResultText(
+    /** The result code. */
     public val code: Long,
+    /** The text for people. */
     public val text: String,
 )
 

@@ -27,7 +27,7 @@ public enum class AckOutcome {
     /** No acknowledgement arrived, in spite of all retries. */
     TIMED_OUT,
 
-    /** The queue of a slow app was full, and newer reports took its place. */
+    /** The report was dropped for newer ones, because the app was slow. */
     DROPPED,
 
     /** The connection ended first. */
@@ -60,7 +60,7 @@ public enum class PushErrorKind(
     /** The connection is closed; for a stream: the app has no open data connection. */
     NO_CONNECTION("no_connection"),
 
-    /** Several apps share the address, so the data connection matches none of them. */
+    /** Several apps share the address, so the owner of the data connection is unknown. */
     AMBIGUOUS("ambiguous"),
 }
 

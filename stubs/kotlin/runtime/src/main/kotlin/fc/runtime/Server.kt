@@ -157,7 +157,7 @@ public class Server internal constructor(
         null
     }
 
-    /** Closes the robot at once. */
+    /** Ends the robot at once. */
     override fun close() {
         stopListening()
         core.loop.execute {

@@ -80,7 +80,7 @@ internal fun limitTests(tests: Tests) {
         answer(0..2)
         expect(1, robot.wire.link.writes)
         expect(listOf(1L, 2L, 3L), robot.wire.frames().map { it.id.id })
-        // The app takes a part of the responses, and the rest after its requests.
+        // The app takes a part of these responses, and the rest later with the next ones.
         robot.wire.link.room = 100
         answer(3..5)
         answer(6..8)

@@ -206,7 +206,7 @@ internal fun netTests(tests: Tests) {
             callers.awaitAll()
         }
         expect(true, ends.all { it == "lost" || it == "closed" }) { "$ends:" }
-        // All read requests got responses, and all handled ones are counted.
+        // Every handled request got its response.
         expect(answered.get(), robot.server.counters.callsAnswered)
         expect(0, app.inFlight)
         app.close()
