@@ -1,17 +1,17 @@
 // An app and a robot that use what `noise.yaml` adds.
 
+import { PartialRobot } from './generated/index.ts'
 import type {
   Client,
   MeasureNoiseRequest,
   MeasureNoiseResponse,
   NoiseBand,
   NoiseChanged,
-  PartialRobot,
   Reporter,
 } from './generated/index.ts'
 
-export class Ear implements PartialRobot {
-  measureNoise({ seconds }: MeasureNoiseRequest): MeasureNoiseResponse {
+export class Ear extends PartialRobot {
+  override measureNoise({ seconds }: MeasureNoiseRequest): MeasureNoiseResponse {
     const band: NoiseBand = { hertz: 1000, level: seconds }
     return { bands: [band] }
   }

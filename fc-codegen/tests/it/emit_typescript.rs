@@ -200,7 +200,7 @@ fn a_command_is_in_every_file_that_commands_are_in() {
         ),
         (
             "groups/more/messages.ts",
-            "doMore(request: DoMoreRequest, context: Context): Answer<DoMoreResponse>",
+            "doMore?(request: DoMoreRequest, context: Context): Answer<DoMoreResponse>",
         ),
         ("groups/more/messages.ts", "doMore(): DoMoreResponse"),
         (
@@ -211,7 +211,7 @@ fn a_command_is_in_every_file_that_commands_are_in() {
         ("operations.ts", "...moreCommands,"),
         (
             "robot.ts",
-            "export interface Robot extends messages.DemoGroupRobot, messages.MoreRobot {",
+            "export interface PartialRobot extends messages.DemoGroupPartialRobot, messages.MorePartialRobot {",
         ),
         (
             "groups/more/schemas.ts",

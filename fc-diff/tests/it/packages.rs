@@ -160,7 +160,7 @@ const KNOWN: [(Language, &[&str]); 5] = [
             "Lamp",
             "Client",
             "LampCalls.setLevel",
-            "LampRobot.setLevel",
+            "LampPartialRobot.setLevel",
             "LampReporter.alarm",
             "LampStreams.subscribeGlow",
             "RequestEnvelope.sentAt",
@@ -197,7 +197,7 @@ const KNOWN: [(Language, &[&str]); 5] = [
         Language::Kotlin,
         &[
             "lamp.Lamp",
-            "lamp.LampClient.setLevel(request: SetLevelRequest)",
+            "lamp.LampClient.setLevel(request: SetLevelRequest, options: CallOptions = CallOptions())",
             "lamp.LampHandlers.setLevel(context: Context, request: SetLevelRequest)",
             "lamp.LampOperations.setLevel",
             "lamp.ResultCode.Companion.NO_BULB",

@@ -1,17 +1,17 @@
 // A robot and an app on this machine: the app reads the serial number, and the robot reports the progress of
 // recharging.
 
-import { Client, Refusal, Reporter, ResultCode, nameOf, schemas, serve } from 'fc-protocol'
-import type { Answer, Client as App, GetRobotSnResponse, PartialRobot, StartRechargeResponse } from 'fc-protocol'
+import { Client, PartialRobot, Refusal, Reporter, ResultCode, nameOf, schemas, serve } from 'fc-protocol'
+import type { Answer, Client as App, GetRobotSnResponse, StartRechargeResponse } from 'fc-protocol'
 import { nodePlatform } from 'fc-protocol/node'
 
 // #region robot
-class Trolley implements PartialRobot {
-  getRobotSn(): Answer<GetRobotSnResponse> {
+class Trolley extends PartialRobot {
+  override getRobotSn(): Answer<GetRobotSnResponse> {
     return { data: { robotSn: '100132007654321', robotModel: 'Indoor' } }
   }
 
-  startRecharge(): Answer<StartRechargeResponse> {
+  override startRecharge(): Answer<StartRechargeResponse> {
     throw new Refusal(ResultCode.InvalidParameter, 'there is no dock here')
   }
 }

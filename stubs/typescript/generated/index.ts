@@ -37,6 +37,7 @@ export {
   acceptedIn,
   checked,
   defaultBackoff,
+  fromJson,
   isError,
   isFinal,
   isInOrder,
@@ -45,6 +46,7 @@ export {
   mayFollow,
   nameOf,
   redacted,
+  toJson,
   withDefaults,
 } from '../src/runtime.ts'
 export type {
@@ -95,8 +97,8 @@ export * as defaults from './defaults.ts'
 export * from './messages.ts'
 export { Fc } from './operations.ts'
 export * as reports from './reports.ts'
-export { ExampleRobot, Reporter, serve } from './robot.ts'
-export type { PartialRobot, Robot } from './robot.ts'
+export { ExampleRobot, PartialRobot, Reporter, serve } from './robot.ts'
+export type { Robot } from './robot.ts'
 export * as schemas from './schemas.ts'
 export * as streams from './streams.ts'
 export * as tables from './tables.ts'

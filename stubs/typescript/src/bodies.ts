@@ -3,10 +3,10 @@
 import { BodyError } from './fault.ts'
 import type { ResultText } from './operation.ts'
 import type { Clock } from './platform.ts'
-import { readEnvelope, readEnveloped, readMessage } from './read.ts'
+import { fromJson, readEnvelope, readEnveloped } from './read.ts'
 import { Refusal } from './refusal.ts'
 import type { Allowance } from './scanner.ts'
-import type { AnyStruct, Extra, Struct } from './schema.ts'
+import type { AnyStruct, Extra, JsonText, Struct } from './schema.ts'
 import type { EnvelopeOf, Limits, Wire } from './wire.ts'
 import { bytesOf, writeEnveloped } from './write.ts'
 
@@ -25,8 +25,7 @@ export const textOf = ({ extra = [] }: Keys): string =>
 
 /** Returns the keys of an object from its JSON text. Throws a `BodyError`. */
 export function keysOf(json: unknown, allowed: Allowance): Keys {
-  if (typeof json !== 'string') throw new BodyError('wrong_type', 'JSON text')
-  return readMessage(keys, bytesOf(json), allowed)
+  return fromJson(keys, json as JsonText, allowed)
 }
 
 type Envelope = Record<string, unknown>

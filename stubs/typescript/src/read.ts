@@ -10,9 +10,19 @@ import { beforeRounding } from './floats.ts'
 import { integral } from './json.ts'
 import { isList, joint, named, planOf } from './plan.ts'
 import type { FieldPlan, Named, StructPlan, Value } from './plan.ts'
+import { utf8Of } from './room.ts'
 import { ANY, CLOSE_LIST, CLOSE_OBJECT, LIST, OBJECT, STRING, Scanner } from './scanner.ts'
 import type { Allowance } from './scanner.ts'
-import type { AnyEnum, EnumValueOf, ExtraKey, FieldSchema, IntegerName, Struct, TypeSchema } from './schema.ts'
+import type {
+  AnyEnum,
+  EnumValueOf,
+  ExtraKey,
+  FieldSchema,
+  IntegerName,
+  JsonText,
+  Struct,
+  TypeSchema,
+} from './schema.ts'
 
 /** An object under construction. */
 type Made = Record<string, Value>
@@ -53,6 +63,15 @@ export interface Enveloped<E, M> {
   envelope: E
   /** The message's own keys. */
   message: M
+}
+
+/** The most that a text may cost, unless the caller sets another limit. No protocol allows a greater depth. */
+const ALLOWED: Allowance = { depth: 127, values: 2 ** 20 }
+
+/** Reads a message from JSON as `toJson` writes it. Throws a `BodyError`. */
+export function fromJson<M>(struct: Struct<M>, json: JsonText, allowance: Allowance = ALLOWED): M {
+  if (typeof json !== 'string') throw new BodyError('wrong_type', 'JSON text')
+  return readMessage(struct, utf8Of(json), allowance)
 }
 
 /** Reads a body that has no envelope. Throws a `BodyError`. */

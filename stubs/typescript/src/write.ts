@@ -16,8 +16,8 @@ import type { AnyEnum, EnumValueOf, ExtraKey, FieldSchema, IntegerName, Struct, 
 /** A message with the struct that describes it. */
 type Part = readonly [struct: AnyStruct, message: Value]
 
-/** Writes a message as JSON. Throws a `BodyError` if it breaks a constraint. */
-export function writeMessage<M>(struct: Struct<M>, message: M): string {
+/** Returns a message as JSON; `JSON.stringify` refuses `bigint`. Throws a `BodyError` if it breaks a constraint. */
+export function toJson<M>(struct: Struct<M>, message: M): string {
   return `{${members([[struct, message]])}}`
 }
 

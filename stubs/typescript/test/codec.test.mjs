@@ -2,15 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import {
-  BodyError,
-  Session,
-  bytesOf,
-  readEnveloped,
-  readMessage,
-  writeEnveloped,
-  writeMessage,
-} from 'fc-protocol/runtime'
+import { BodyError, Session, bytesOf, readEnveloped, readMessage, writeEnveloped, toJson } from 'fc-protocol/runtime'
 
 const ANY = { depth: 64, values: 1 << 20 }
 const inner = { is: 'struct', name: 'Inner', fields: { of: { key: 'of', type: 'u8', max: 5 } } }
@@ -126,11 +118,11 @@ test('what breaks its own constraints is refused before it is sent', () => {
     [{ whole: 1, extra: [{ key: 'x', json: '1,"whole":2' }] }, 'bad_json', ''],
   ]) {
     assert.deepEqual(
-      fault(() => writeMessage(struct, message)),
+      fault(() => toJson(struct, message)),
       [kind, path],
     )
   }
-  assert.equal(writeMessage(struct, { whole: 1, short: 16777217, text: undefined }), '{"whole":1,"short":16777216}')
+  assert.equal(toJson(struct, { whole: 1, short: 16777217, text: undefined }), '{"whole":1,"short":16777216}')
 })
 
 test('what reading costs is bounded', () => {

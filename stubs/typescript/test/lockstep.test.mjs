@@ -8,7 +8,7 @@ import { compile, generate, packageOf, replaced, unlessGenerated } from './packa
 
 /** A program that uses the meter. */
 const PROGRAM = `
-import { Client, ExampleRobot, commands } from './generated/index.ts'
+import { Client, ExampleRobot, PartialRobot, commands } from './generated/index.ts'
 import type { Context, ReadPowerResponse, Robot, SwitchMoved } from './generated/index.ts'
 
 export async function watts(client: Client): Promise<number> {
@@ -25,6 +25,16 @@ export const robot: Robot = {
   setTariff: () => commands.setTariff.responseExample(),
   closeSwitch: (request, context: Context) => examples.closeSwitch(request, context),
   watchLoad: () => commands.watchLoad.responseExample(),
+}
+
+export class Part extends PartialRobot {
+  override closeSwitch: Robot['closeSwitch'] = (request, context) => examples.closeSwitch(request, context)
+
+  override readPower(): ReadPowerResponse {
+    return commands.readPower.responseExample()
+  }
+
+  helper(): void {}
 }
 `
 
@@ -68,6 +78,13 @@ for (const [what, change, said] of [
     assert.ok(!/^(?:generated|src)\//m.test(found), found)
   })
 }
+
+test('misspelt_handler_is_refused_by_the_compiler', { skip: unlessGenerated }, () => {
+  const folder = packageOf('misspelt', 'meter', (text) => text)
+  generate(folder)
+  writeFileSync(path.join(folder, 'program.ts'), PROGRAM.replace('override readPower()', 'override readPwoer()'))
+  assert.match(compile(folder), /^program\.ts\(.*Did you mean 'readPower'\?\n$/)
+})
 
 test('a command that is added is there', { skip: unlessGenerated }, () => {
   const folder = packageOf('added', 'meter', replaced('\nreports:\n', TELL_TIME))

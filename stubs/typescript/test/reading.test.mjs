@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
-import { BodyError, readMessage, writeMessage } from 'fc-protocol/runtime'
+import { BodyError, readMessage, toJson } from 'fc-protocol/runtime'
 import { base64Of, bytesOfBase64 } from '../dist/src/base64.js'
 import { room, utf8Of } from '../dist/src/room.js'
 import { Scanner } from '../dist/src/scanner.js'
@@ -78,7 +78,7 @@ test('texts are what UTF-8 says, short or long, beside escapes and inside what n
       assert.equal(message.text, around)
       assert.equal(message.open, JSON.stringify([around]))
       assert.deepEqual(message.extra, [{ key: `${around} key`, json: JSON.stringify({ [around]: around }) }])
-      assert.equal(writeMessage(struct, message), new TextDecoder().decode(bytes))
+      assert.equal(toJson(struct, message), new TextDecoder().decode(bytes))
     }
   }
 })

@@ -14,6 +14,9 @@ use crate::package::ranges::UNKNOWN;
 use crate::package::source::Source;
 use fc_spec::model::{Effect, Side};
 
+/// The word of a group's part of `PartialRobot`.
+const PARTIAL: &str = "partial_robot";
+
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     let has_commands = groups.iter().any(|it| it.has(What::Commands));
     let has_reports = groups.iter().any(|it| it.has(What::Reports));
@@ -48,17 +51,16 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     names.extend(has_streams.then(|| "streams".to_owned()));
     named(&mut out, "import", names, "./operations.ts");
     out.blank();
-    robot_interface(
+    robot(
         &mut out,
         context,
-        &parts(context, groups, Side::Robot.name(), What::Commands),
+        parts(context, groups, Side::Robot.name(), What::Commands),
     );
-    out.blank();
-    out.docs(&Docs::said([
-        "只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
-        "A robot with some of the commands. It refuses the others as not implemented.",
-    ]));
-    out.line("export type PartialRobot = Partial<Robot>");
+    partial_robot(
+        &mut out,
+        context,
+        &parts(context, groups, PARTIAL, What::Commands),
+    );
     out.documented(&Docs::said([
         "为 app 提供服务；`config` 中没有设置的项使用规范的默认值。",
         "Serves apps. Settings missing from `config` have the defaults of the spec.",
@@ -116,7 +118,7 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
     out.finish()
 }
 
-fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
+fn robot(out: &mut Source, context: &Context<'_>, mut parts: Vec<String>) {
     let mut docs = Docs::two_lines([
         "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。",
         "A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler reports a missing\n\
@@ -128,7 +130,18 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
          the caller does not wait for the response any more.",
     ]);
     out.docs(&docs);
-    let open = extending(out, "Robot", parts);
+    let ranges = ranges(context).into_iter().map(|(name, _)| name);
+    let raw: Vec<String> = ranges.chain([UNKNOWN.to_owned()]).collect();
+    parts.push(format!("Pick<PartialRobot, '{}'>", raw.join("' | '")));
+    out.line([&extending(out, "Robot", &parts), " {}"].concat());
+}
+
+fn partial_robot(out: &mut Source, context: &Context<'_>, parts: &[String]) {
+    out.documented(&Docs::line([
+        "各组指令的方法，都可以不写。",
+        "The methods of each group of commands. Each is optional.",
+    ]));
+    let open = extending(out, "PartialRobot", parts);
     out.block(open, |out| {
         for (name, range) in ranges(context) {
             let mut docs = Docs::titled(&range.text);
@@ -144,6 +157,11 @@ fn robot_interface(out: &mut Source, context: &Context<'_>, parts: &[String]) {
         ]);
         raw(out, docs, UNKNOWN);
     });
+    out.documented(&Docs::said([
+        "只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。继承它，并给每个方法写上 `override`，编译器会指出写错的名称。",
+        "A robot with some of the commands. It refuses the others as not implemented. Extend it and mark each method with `override`: the compiler then finds misspelt names.",
+    ]));
+    out.line("export abstract class PartialRobot {}");
 }
 
 /// Writes an optional method for requests without a type. A new range in the spec therefore breaks no robot.
@@ -163,8 +181,8 @@ fn example(out: &mut Source, parts: &[String]) {
     let about = ["每组指令的方法。", "The methods of each group of commands."];
     merged(out, "ExampleRobot", about, parts);
     let mut docs = Docs::two_lines([
-        "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。",
-        "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `implements PartialRobot`.",
+        "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `extends PartialRobot` 开始。",
+        "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `extends PartialRobot`.",
     ]);
     docs.both([
         "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。",
@@ -240,16 +258,26 @@ pub fn runtime_types(group: &Group<'_, '_>) -> Vec<&'static str> {
 /// Writes a group's part of the robot's side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     let handlers = (
-        Side::Robot.name(),
+        PARTIAL,
         [
-            "本组的指令，`Robot` 的方法。",
-            "The commands of the group: methods of `Robot`.",
+            "本组的指令，都可以不写：`PartialRobot` 的方法。",
+            "The commands of the group, each optional: methods of `PartialRobot`.",
         ],
     );
     group.interface(out, context, handlers, &group.commands, |out, command| {
         handler(out, context, command);
     });
-    let robot = group.part(context, Side::Robot.name());
+    let partial = group.part(context, PARTIAL);
+    if group.has(What::Commands) {
+        out.documented(&Docs::line([
+            "本组的指令，`Robot` 的方法。",
+            "The commands of the group: methods of `Robot`.",
+        ]));
+        let name = group.part(context, Side::Robot.name());
+        out.line(format!(
+            "export interface {name} extends Required<{partial}> {{}}"
+        ));
+    }
     let examples = (
         "examples",
         [
@@ -259,7 +287,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     );
     group.interface(out, context, examples, &group.commands, |out, command| {
         let mut docs = Docs::default();
-        docs.raw(format!("{{@inheritDoc {robot}.{}}}", command.method));
+        docs.raw(format!("{{@inheritDoc {partial}.{}}}", command.method));
         out.docs(&docs);
         let parameters = parameters(context, command);
         let parameters: &[String] = if may_move(command) { &parameters } else { &[] };
@@ -328,7 +356,8 @@ fn handler(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     end(&mut docs, context, operation);
     out.docs(&docs);
     let result = format!("{}<{}>", own(context, "Answer"), command.response.ty.name);
-    method(out, command.method, &parameters(context, command), &result);
+    let name = [command.method, "?"].concat();
+    method(out, &name, &parameters(context, command), &result);
 }
 
 /// Returns the parameters of a robot's method.

@@ -10,7 +10,8 @@ use fc_spec::model::Side;
 const RUNTIME: &str = "\
     AppStreams BodyError CallError ConditionError ConnectError DataConnection DataError FollowError \
     Following PushError Refusal Reports Server Subscription TransportError acceptedIn checked \
-    defaultBackoff isError isFinal isInOrder isKnown lossText mayFollow nameOf redacted withDefaults";
+    defaultBackoff fromJson isError isFinal isInOrder isKnown lossText mayFollow nameOf redacted toJson \
+    withDefaults";
 
 /// The types of the runtime that apps and robots need.
 const RUNTIME_TYPES: &str = "\
@@ -66,7 +67,7 @@ pub fn file(context: &Context<'_>) -> String {
         package.name
     ));
     out.line("export * as reports from './reports.ts'");
-    let mut robot = vec!["serve"];
+    let mut robot = vec!["PartialRobot", "serve"];
     robot.extend((!context.commands().is_empty()).then_some("ExampleRobot"));
     robot.extend((!context.reports().is_empty()).then_some("Reporter"));
     robot.extend(
@@ -77,7 +78,7 @@ pub fn file(context: &Context<'_>) -> String {
             .then_some("Streamer"),
     );
     named(&mut out, "export", robot, "./robot.ts");
-    out.line("export type { PartialRobot, Robot } from './robot.ts'");
+    out.line("export type { Robot } from './robot.ts'");
     out.line("export * as schemas from './schemas.ts'");
     out.line("export * as streams from './streams.ts'");
     out.line("export * as tables from './tables.ts'");

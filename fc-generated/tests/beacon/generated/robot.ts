@@ -23,7 +23,10 @@ import { Beacon, reports, service, streams } from './operations.ts'
  * Throw a `Refusal` to refuse a command. `context.signal` is aborted after a handler timeout or a loss of the connection:
  * the caller does not wait for the response any more.
  */
-export interface Robot extends messages.PlaceRobot {
+export interface Robot extends messages.PlaceRobot, Pick<PartialRobot, 'unknown'> {}
+
+/** 各组指令的方法，都可以不写。The methods of each group of commands. Each is optional. */
+export interface PartialRobot extends messages.PlacePartialRobot {
   /**
    * 功能码不在规范中的指令。
    * Commands with a code that is not in the spec.
@@ -36,10 +39,11 @@ export interface Robot extends messages.PlaceRobot {
 }
 
 /**
- * 只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。
- * A robot with some of the commands. It refuses the others as not implemented.
+ * 只实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。继承它，并给每个方法写上 `override`，编译器会指出写错的名称。
+ * A robot with some of the commands. It refuses the others as not implemented. Extend it and mark each method with
+ * `override`: the compiler then finds misspelt names.
  */
-export type PartialRobot = Partial<Robot>
+export abstract class PartialRobot {}
 
 /**
  * 为 app 提供服务；`config` 中没有设置的项使用规范的默认值。
@@ -53,8 +57,8 @@ export function serve(platform: ServerPlatform, robot: PartialRobot, config: Ser
 export interface ExampleRobot extends messages.PlaceExamples {}
 
 /**
- * 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `implements PartialRobot` 开始。
- * Responds with the examples of the spec, only for demos and tests. Your own robot starts with `implements PartialRobot`.
+ * 用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `extends PartialRobot` 开始。
+ * Responds with the examples of the spec, only for demos and tests. Your own robot starts with `extends PartialRobot`.
  *
  * 它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。
  *

@@ -34,6 +34,7 @@ export {
   acceptedIn,
   checked,
   defaultBackoff,
+  fromJson,
   isError,
   isFinal,
   isInOrder,
@@ -42,6 +43,7 @@ export {
   mayFollow,
   nameOf,
   redacted,
+  toJson,
   withDefaults,
 } from '../src/runtime.ts'
 export type {
@@ -92,8 +94,8 @@ export * as defaults from './defaults.ts'
 export * from './messages.ts'
 export { Meter } from './operations.ts'
 export * as reports from './reports.ts'
-export { ExampleRobot, Reporter, Streamer, serve } from './robot.ts'
-export type { PartialRobot, Robot } from './robot.ts'
+export { ExampleRobot, PartialRobot, Reporter, Streamer, serve } from './robot.ts'
+export type { Robot } from './robot.ts'
 export * as schemas from './schemas.ts'
 export * as streams from './streams.ts'
 export * as tables from './tables.ts'

@@ -14,7 +14,7 @@ import type { Transport } from '../platform.ts'
 import { readMessage } from '../read.ts'
 import { Refusal } from '../refusal.ts'
 import type { Struct } from '../schema.ts'
-import { bytesOf, writeMessage } from '../write.ts'
+import { bytesOf, toJson } from '../write.ts'
 import type { Core } from './core.ts'
 import { ConnectError, DataError } from './error.ts'
 import type { DataErrorKind } from './error.ts'
@@ -342,7 +342,7 @@ export class DataConnection {
 export function bytesOfContent<Content>(stream: Stream<Content>, content: Content): Uint8Array {
   if (stream.content === null) return content as Uint8Array
   try {
-    return bytesOf(writeMessage(stream.content as Struct<Content>, content))
+    return bytesOf(toJson(stream.content as Struct<Content>, content))
   } catch (problem) {
     throw problem instanceof BodyError ? new DataError('invalid', { body: problem }) : problem
   }

@@ -1,6 +1,6 @@
 // Messages as in a package: plain types, each with a constant that the compiler checks against it.
 
-import { bytesOf, readMessage, writeMessage } from 'fc-protocol/runtime'
+import { bytesOf, readMessage, toJson } from 'fc-protocol/runtime'
 import type { Choice, Enum, Extra, Struct } from 'fc-protocol/runtime'
 
 /** An open enum: any other number is kept. */
@@ -58,9 +58,9 @@ const GoStruct: Struct<Go> = {
 }
 
 const sent: Go = { mode: Mode.Moving, target: { case: 'Id', value: { id: 2n ** 60n } }, flags: [true], via: [{ x: 1 }], serial: 7 }
-const text = writeMessage(GoStruct, sent)
+const text = toJson(GoStruct, sent)
 const read: Go = readMessage(GoStruct, bytesOf(text), { depth: 8, values: 100 })
-const again = writeMessage(GoStruct, read)
+const again = toJson(GoStruct, read)
 if (text !== again || typeof read.serial !== 'number') throw new Error(`${text} became ${again}`)
 
 // The compiler finds each mismatch with a type.

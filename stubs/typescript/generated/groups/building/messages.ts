@@ -264,8 +264,10 @@ export interface BuildingCalls {
   getFloors(request?: GetFloorsRequest, options?: CallOptions): Promise<GetFloorsResponse>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface BuildingRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface BuildingPartialRobot {
   /**
    * 获取物联网设备列表
    * List the IoT devices of a type
@@ -281,7 +283,7 @@ export interface BuildingRobot {
    * - 文档：`docs-site/reference/commands/list_iot_devices.md`
    * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
    */
-  listIotDevices(request: ListIotDevicesRequest, context: Context): Answer<ListIotDevicesResponse>
+  listIotDevices?(request: ListIotDevicesRequest, context: Context): Answer<ListIotDevicesResponse>
 
   /**
    * 获取楼层信息
@@ -298,14 +300,17 @@ export interface BuildingRobot {
    * - 文档：`docs-site/reference/commands/get_floors.md`
    * - Docs: `docs-site/en/reference/commands/get_floors.md`
    */
-  getFloors(request: GetFloorsRequest, context: Context): Answer<GetFloorsResponse>
+  getFloors?(request: GetFloorsRequest, context: Context): Answer<GetFloorsResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface BuildingRobot extends Required<BuildingPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface BuildingExamples {
-  /** {@inheritDoc BuildingRobot.listIotDevices} */
+  /** {@inheritDoc BuildingPartialRobot.listIotDevices} */
   listIotDevices(): ListIotDevicesResponse
 
-  /** {@inheritDoc BuildingRobot.getFloors} */
+  /** {@inheritDoc BuildingPartialRobot.getFloors} */
   getFloors(): GetFloorsResponse
 }

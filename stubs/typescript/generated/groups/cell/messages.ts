@@ -547,8 +547,10 @@ export interface CellCalls {
   setCellConfig(request: SetCellConfigRequest, options?: CallOptions): Promise<SetCellConfigResponse>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface CellRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface CellPartialRobot {
   /**
    * 获取机器人格口门配置
    * Get the compartment configuration
@@ -564,7 +566,7 @@ export interface CellRobot {
    * - 文档：`docs-site/reference/commands/get_cell_config.md`
    * - Docs: `docs-site/en/reference/commands/get_cell_config.md`
    */
-  getCellConfig(request: GetCellConfigRequest, context: Context): Answer<GetCellConfigResponse>
+  getCellConfig?(request: GetCellConfigRequest, context: Context): Answer<GetCellConfigResponse>
 
   /**
    * 设置机器人格口配置
@@ -589,14 +591,17 @@ export interface CellRobot {
    * - 文档：`docs-site/reference/commands/set_cell_config.md`
    * - Docs: `docs-site/en/reference/commands/set_cell_config.md`
    */
-  setCellConfig(request: SetCellConfigRequest, context: Context): Answer<SetCellConfigResponse>
+  setCellConfig?(request: SetCellConfigRequest, context: Context): Answer<SetCellConfigResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface CellRobot extends Required<CellPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface CellExamples {
-  /** {@inheritDoc CellRobot.getCellConfig} */
+  /** {@inheritDoc CellPartialRobot.getCellConfig} */
   getCellConfig(): GetCellConfigResponse
 
-  /** {@inheritDoc CellRobot.setCellConfig} */
+  /** {@inheritDoc CellPartialRobot.setCellConfig} */
   setCellConfig(): SetCellConfigResponse
 }

@@ -135,8 +135,10 @@ export interface DispatchCalls {
   checkCondition0333(request?: CheckCondition0333Request, options?: CallOptions): Promise<CheckCondition0333Response>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface DispatchRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface DispatchPartialRobot {
   /**
    * 检查条件是否满足（0x0333，用途不详）
    * Check a condition (0x0333, purpose unknown)
@@ -152,11 +154,14 @@ export interface DispatchRobot {
    * - 文档：`docs-site/reference/commands/check_condition_0333.md`
    * - Docs: `docs-site/en/reference/commands/check_condition_0333.md`
    */
-  checkCondition0333(request: CheckCondition0333Request, context: Context): Answer<CheckCondition0333Response>
+  checkCondition0333?(request: CheckCondition0333Request, context: Context): Answer<CheckCondition0333Response>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface DispatchRobot extends Required<DispatchPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface DispatchExamples {
-  /** {@inheritDoc DispatchRobot.checkCondition0333} */
+  /** {@inheritDoc DispatchPartialRobot.checkCondition0333} */
   checkCondition0333(request: CheckCondition0333Request, context: Context): CheckCondition0333Response
 }

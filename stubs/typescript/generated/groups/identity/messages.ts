@@ -163,8 +163,10 @@ export interface IdentityCalls {
   getFirmwareVersions(request?: GetFirmwareVersionsRequest, options?: CallOptions): Promise<GetFirmwareVersionsResponse>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface IdentityRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface IdentityPartialRobot {
   /**
    * 获取机器人序列号
    * Get the serial number
@@ -179,7 +181,7 @@ export interface IdentityRobot {
    * - 文档：`docs-site/reference/commands/get_robot_sn.md`
    * - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
    */
-  getRobotSn(request: GetRobotSnRequest, context: Context): Answer<GetRobotSnResponse>
+  getRobotSn?(request: GetRobotSnRequest, context: Context): Answer<GetRobotSnResponse>
 
   /**
    * 获取固件版本
@@ -198,14 +200,17 @@ export interface IdentityRobot {
    * - 文档：`docs-site/reference/commands/get_firmware_versions.md`
    * - Docs: `docs-site/en/reference/commands/get_firmware_versions.md`
    */
-  getFirmwareVersions(request: GetFirmwareVersionsRequest, context: Context): Answer<GetFirmwareVersionsResponse>
+  getFirmwareVersions?(request: GetFirmwareVersionsRequest, context: Context): Answer<GetFirmwareVersionsResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface IdentityRobot extends Required<IdentityPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface IdentityExamples {
-  /** {@inheritDoc IdentityRobot.getRobotSn} */
+  /** {@inheritDoc IdentityPartialRobot.getRobotSn} */
   getRobotSn(): GetRobotSnResponse
 
-  /** {@inheritDoc IdentityRobot.getFirmwareVersions} */
+  /** {@inheritDoc IdentityPartialRobot.getFirmwareVersions} */
   getFirmwareVersions(): GetFirmwareVersionsResponse
 }

@@ -76,8 +76,10 @@ export interface LaserCalls {
   getLaserScan(request: GetLaserScanRequest, options?: CallOptions): Promise<GetLaserScanResponse>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface LaserRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface LaserPartialRobot {
   /**
    * 获取激光数据
    * Get the lidar data
@@ -92,11 +94,14 @@ export interface LaserRobot {
    * - 文档：`docs-site/reference/commands/get_laser_scan.md`
    * - Docs: `docs-site/en/reference/commands/get_laser_scan.md`
    */
-  getLaserScan(request: GetLaserScanRequest, context: Context): Answer<GetLaserScanResponse>
+  getLaserScan?(request: GetLaserScanRequest, context: Context): Answer<GetLaserScanResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface LaserRobot extends Required<LaserPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface LaserExamples {
-  /** {@inheritDoc LaserRobot.getLaserScan} */
+  /** {@inheritDoc LaserPartialRobot.getLaserScan} */
   getLaserScan(): GetLaserScanResponse
 }

@@ -1004,8 +1004,10 @@ export type MapReport =
    */
   Reported<'MapSyncProgress', MapSyncProgress>
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface MapRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface MapPartialRobot {
   /**
    * 获取地图图像
    * Get the picture of a map
@@ -1021,7 +1023,7 @@ export interface MapRobot {
    * - 文档：`docs-site/reference/commands/get_map_image.md`
    * - Docs: `docs-site/en/reference/commands/get_map_image.md`
    */
-  getMapImage(request: GetMapImageRequest, context: Context): Answer<GetMapImageResponse>
+  getMapImage?(request: GetMapImageRequest, context: Context): Answer<GetMapImageResponse>
 
   /**
    * 获取地图列表
@@ -1037,7 +1039,7 @@ export interface MapRobot {
    * - 文档：`docs-site/reference/commands/list_maps.md`
    * - Docs: `docs-site/en/reference/commands/list_maps.md`
    */
-  listMaps(request: ListMapsRequest, context: Context): Answer<ListMapsResponse>
+  listMaps?(request: ListMapsRequest, context: Context): Answer<ListMapsResponse>
 
   /**
    * 获取地图信息
@@ -1049,7 +1051,7 @@ export interface MapRobot {
    * - 文档：`docs-site/reference/commands/get_map_info.md`
    * - Docs: `docs-site/en/reference/commands/get_map_info.md`
    */
-  getMapInfo(request: GetMapInfoRequest, context: Context): Answer<GetMapInfoResponse>
+  getMapInfo?(request: GetMapInfoRequest, context: Context): Answer<GetMapInfoResponse>
 
   /**
    * 保存地图
@@ -1065,7 +1067,7 @@ export interface MapRobot {
    * - 文档：`docs-site/reference/commands/save_map.md`
    * - Docs: `docs-site/en/reference/commands/save_map.md`
    */
-  saveMap(request: SaveMapRequest, context: Context): Answer<SaveMapResponse>
+  saveMap?(request: SaveMapRequest, context: Context): Answer<SaveMapResponse>
 
   /**
    * 下载地图
@@ -1084,7 +1086,7 @@ export interface MapRobot {
    * - 文档：`docs-site/reference/commands/download_maps.md`
    * - Docs: `docs-site/en/reference/commands/download_maps.md`
    */
-  downloadMaps(request: DownloadMapsRequest, context: Context): Answer<DownloadMapsResponse>
+  downloadMaps?(request: DownloadMapsRequest, context: Context): Answer<DownloadMapsResponse>
 
   /**
    * 上传地图
@@ -1101,7 +1103,7 @@ export interface MapRobot {
    * - 文档：`docs-site/reference/commands/upload_maps.md`
    * - Docs: `docs-site/en/reference/commands/upload_maps.md`
    */
-  uploadMaps(request: UploadMapsRequest, context: Context): Answer<UploadMapsResponse>
+  uploadMaps?(request: UploadMapsRequest, context: Context): Answer<UploadMapsResponse>
 
   /**
    * 获取正在同步的地图进度
@@ -1117,30 +1119,33 @@ export interface MapRobot {
    * - 文档：`docs-site/reference/commands/get_map_sync_progress.md`
    * - Docs: `docs-site/en/reference/commands/get_map_sync_progress.md`
    */
-  getMapSyncProgress(request: GetMapSyncProgressRequest, context: Context): Answer<GetMapSyncProgressResponse>
+  getMapSyncProgress?(request: GetMapSyncProgressRequest, context: Context): Answer<GetMapSyncProgressResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface MapRobot extends Required<MapPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface MapExamples {
-  /** {@inheritDoc MapRobot.getMapImage} */
+  /** {@inheritDoc MapPartialRobot.getMapImage} */
   getMapImage(): GetMapImageResponse
 
-  /** {@inheritDoc MapRobot.listMaps} */
+  /** {@inheritDoc MapPartialRobot.listMaps} */
   listMaps(): ListMapsResponse
 
-  /** {@inheritDoc MapRobot.getMapInfo} */
+  /** {@inheritDoc MapPartialRobot.getMapInfo} */
   getMapInfo(): GetMapInfoResponse
 
-  /** {@inheritDoc MapRobot.saveMap} */
+  /** {@inheritDoc MapPartialRobot.saveMap} */
   saveMap(): SaveMapResponse
 
-  /** {@inheritDoc MapRobot.downloadMaps} */
+  /** {@inheritDoc MapPartialRobot.downloadMaps} */
   downloadMaps(): DownloadMapsResponse
 
-  /** {@inheritDoc MapRobot.uploadMaps} */
+  /** {@inheritDoc MapPartialRobot.uploadMaps} */
   uploadMaps(request: UploadMapsRequest, context: Context): UploadMapsResponse
 
-  /** {@inheritDoc MapRobot.getMapSyncProgress} */
+  /** {@inheritDoc MapPartialRobot.getMapSyncProgress} */
   getMapSyncProgress(): GetMapSyncProgressResponse
 }
 

@@ -407,8 +407,10 @@ export type RechargeReport =
    */
   Reported<'RechargeProgress', RechargeProgress>
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface RechargeRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface RechargePartialRobot {
   /**
    * 发起一键回充
    * Start returning to dock
@@ -426,7 +428,7 @@ export interface RechargeRobot {
    * - 文档：`docs-site/reference/commands/start_recharge.md`
    * - Docs: `docs-site/en/reference/commands/start_recharge.md`
    */
-  startRecharge(request: StartRechargeRequest, context: Context): Answer<StartRechargeResponse>
+  startRecharge?(request: StartRechargeRequest, context: Context): Answer<StartRechargeResponse>
 
   /**
    * 取消一键回充
@@ -443,7 +445,7 @@ export interface RechargeRobot {
    * - 文档：`docs-site/reference/commands/cancel_recharge.md`
    * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
    */
-  cancelRecharge(request: CancelRechargeRequest, context: Context): Answer<CancelRechargeResponse>
+  cancelRecharge?(request: CancelRechargeRequest, context: Context): Answer<CancelRechargeResponse>
 
   /**
    * 获取回充状态
@@ -460,18 +462,21 @@ export interface RechargeRobot {
    * - 文档：`docs-site/reference/commands/get_recharge_status.md`
    * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
    */
-  getRechargeStatus(request: GetRechargeStatusRequest, context: Context): Answer<GetRechargeStatusResponse>
+  getRechargeStatus?(request: GetRechargeStatusRequest, context: Context): Answer<GetRechargeStatusResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface RechargeRobot extends Required<RechargePartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface RechargeExamples {
-  /** {@inheritDoc RechargeRobot.startRecharge} */
+  /** {@inheritDoc RechargePartialRobot.startRecharge} */
   startRecharge(request: StartRechargeRequest, context: Context): StartRechargeResponse
 
-  /** {@inheritDoc RechargeRobot.cancelRecharge} */
+  /** {@inheritDoc RechargePartialRobot.cancelRecharge} */
   cancelRecharge(request: CancelRechargeRequest, context: Context): CancelRechargeResponse
 
-  /** {@inheritDoc RechargeRobot.getRechargeStatus} */
+  /** {@inheritDoc RechargePartialRobot.getRechargeStatus} */
   getRechargeStatus(): GetRechargeStatusResponse
 }
 

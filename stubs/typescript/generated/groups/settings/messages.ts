@@ -360,8 +360,10 @@ export interface SettingsCalls {
   switchEnvironment(request?: SwitchEnvironmentRequest, options?: CallOptions): Promise<SwitchEnvironmentResponse>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface SettingsRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface SettingsPartialRobot {
   /**
    * 读取或设置开关（0x0A08，用途不详）
    * Read or set a switch (0x0A08, purpose unknown)
@@ -377,7 +379,7 @@ export interface SettingsRobot {
    * - 文档：`docs-site/reference/commands/switch_0a08.md`
    * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
    */
-  switch0a08(request: Switch0a08Request, context: Context): Answer<Switch0a08Response>
+  switch0a08?(request: Switch0a08Request, context: Context): Answer<Switch0a08Response>
 
   /**
    * 语音提醒的开关
@@ -400,7 +402,7 @@ export interface SettingsRobot {
    *
    * @deprecated The source strikes out the whole heading. It gives no reason and does not say whether robots still support the command. Do not use it in new code.
    */
-  setVoiceReminder(request: SetVoiceReminderRequest, context: Context): Answer<SetVoiceReminderResponse>
+  setVoiceReminder?(request: SetVoiceReminderRequest, context: Context): Answer<SetVoiceReminderResponse>
 
   /**
    * 切换业务环境
@@ -416,17 +418,20 @@ export interface SettingsRobot {
    * - 文档：`docs-site/reference/commands/switch_environment.md`
    * - Docs: `docs-site/en/reference/commands/switch_environment.md`
    */
-  switchEnvironment(request: SwitchEnvironmentRequest, context: Context): Answer<SwitchEnvironmentResponse>
+  switchEnvironment?(request: SwitchEnvironmentRequest, context: Context): Answer<SwitchEnvironmentResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface SettingsRobot extends Required<SettingsPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface SettingsExamples {
-  /** {@inheritDoc SettingsRobot.switch0a08} */
+  /** {@inheritDoc SettingsPartialRobot.switch0a08} */
   switch0a08(request: Switch0a08Request, context: Context): Switch0a08Response
 
-  /** {@inheritDoc SettingsRobot.setVoiceReminder} */
+  /** {@inheritDoc SettingsPartialRobot.setVoiceReminder} */
   setVoiceReminder(): SetVoiceReminderResponse
 
-  /** {@inheritDoc SettingsRobot.switchEnvironment} */
+  /** {@inheritDoc SettingsPartialRobot.switchEnvironment} */
   switchEnvironment(): SwitchEnvironmentResponse
 }

@@ -296,8 +296,10 @@ export interface StandbyCalls {
   getPositions0314(request?: GetPositions0314Request, options?: CallOptions): Promise<GetPositions0314Response>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface StandbyRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface StandbyPartialRobot {
   /**
    * 设置机器人待命时的位置
    * Set the standby position
@@ -313,7 +315,7 @@ export interface StandbyRobot {
    * - 文档：`docs-site/reference/commands/set_standby_position.md`
    * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
    */
-  setStandbyPosition(request: SetStandbyPositionRequest, context: Context): Answer<SetStandbyPositionResponse>
+  setStandbyPosition?(request: SetStandbyPositionRequest, context: Context): Answer<SetStandbyPositionResponse>
 
   /**
    * 获取机器人待命时的位置
@@ -325,7 +327,7 @@ export interface StandbyRobot {
    * - 文档：`docs-site/reference/commands/get_standby_position.md`
    * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
    */
-  getStandbyPosition(request: GetStandbyPositionRequest, context: Context): Answer<GetStandbyPositionResponse>
+  getStandbyPosition?(request: GetStandbyPositionRequest, context: Context): Answer<GetStandbyPositionResponse>
 
   /**
    * 设置点位（0x0313，用途不详）
@@ -337,7 +339,7 @@ export interface StandbyRobot {
    * - 文档：`docs-site/reference/commands/set_positions_0313.md`
    * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
    */
-  setPositions0313(request: SetPositions0313Request, context: Context): Answer<SetPositions0313Response>
+  setPositions0313?(request: SetPositions0313Request, context: Context): Answer<SetPositions0313Response>
 
   /**
    * 获取点位（0x0314，用途不详）
@@ -354,20 +356,23 @@ export interface StandbyRobot {
    * - 文档：`docs-site/reference/commands/get_positions_0314.md`
    * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
    */
-  getPositions0314(request: GetPositions0314Request, context: Context): Answer<GetPositions0314Response>
+  getPositions0314?(request: GetPositions0314Request, context: Context): Answer<GetPositions0314Response>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface StandbyRobot extends Required<StandbyPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface StandbyExamples {
-  /** {@inheritDoc StandbyRobot.setStandbyPosition} */
+  /** {@inheritDoc StandbyPartialRobot.setStandbyPosition} */
   setStandbyPosition(): SetStandbyPositionResponse
 
-  /** {@inheritDoc StandbyRobot.getStandbyPosition} */
+  /** {@inheritDoc StandbyPartialRobot.getStandbyPosition} */
   getStandbyPosition(): GetStandbyPositionResponse
 
-  /** {@inheritDoc StandbyRobot.setPositions0313} */
+  /** {@inheritDoc StandbyPartialRobot.setPositions0313} */
   setPositions0313(request: SetPositions0313Request, context: Context): SetPositions0313Response
 
-  /** {@inheritDoc StandbyRobot.getPositions0314} */
+  /** {@inheritDoc StandbyPartialRobot.getPositions0314} */
   getPositions0314(request: GetPositions0314Request, context: Context): GetPositions0314Response
 }

@@ -767,8 +767,10 @@ export interface StationCalls {
   renameStation(request: RenameStationRequest, options?: CallOptions): Promise<RenameStationResponse>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface StationRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface StationPartialRobot {
   /**
    * 根据站点 ID 获取站点信息
    * Get a station by its ID
@@ -779,7 +781,7 @@ export interface StationRobot {
    * - 文档：`docs-site/reference/commands/get_station.md`
    * - Docs: `docs-site/en/reference/commands/get_station.md`
    */
-  getStation(request: GetStationRequest, context: Context): Answer<GetStationResponse>
+  getStation?(request: GetStationRequest, context: Context): Answer<GetStationResponse>
 
   /**
    * 一键上报地图点位信息
@@ -796,7 +798,7 @@ export interface StationRobot {
    * - 文档：`docs-site/reference/commands/upload_map_stations.md`
    * - Docs: `docs-site/en/reference/commands/upload_map_stations.md`
    */
-  uploadMapStations(request: UploadMapStationsRequest, context: Context): Answer<UploadMapStationsResponse>
+  uploadMapStations?(request: UploadMapStationsRequest, context: Context): Answer<UploadMapStationsResponse>
 
   /**
    * 添加站点信息
@@ -812,7 +814,7 @@ export interface StationRobot {
    * - 文档：`docs-site/reference/commands/add_station.md`
    * - Docs: `docs-site/en/reference/commands/add_station.md`
    */
-  addStation(request: AddStationRequest, context: Context): Answer<AddStationResponse>
+  addStation?(request: AddStationRequest, context: Context): Answer<AddStationResponse>
 
   /**
    * 删除站点信息
@@ -824,7 +826,7 @@ export interface StationRobot {
    * - 文档：`docs-site/reference/commands/delete_station.md`
    * - Docs: `docs-site/en/reference/commands/delete_station.md`
    */
-  deleteStation(request: DeleteStationRequest, context: Context): Answer<DeleteStationResponse>
+  deleteStation?(request: DeleteStationRequest, context: Context): Answer<DeleteStationResponse>
 
   /**
    * 重命名站点
@@ -836,23 +838,26 @@ export interface StationRobot {
    * - 文档：`docs-site/reference/commands/rename_station.md`
    * - Docs: `docs-site/en/reference/commands/rename_station.md`
    */
-  renameStation(request: RenameStationRequest, context: Context): Answer<RenameStationResponse>
+  renameStation?(request: RenameStationRequest, context: Context): Answer<RenameStationResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface StationRobot extends Required<StationPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface StationExamples {
-  /** {@inheritDoc StationRobot.getStation} */
+  /** {@inheritDoc StationPartialRobot.getStation} */
   getStation(): GetStationResponse
 
-  /** {@inheritDoc StationRobot.uploadMapStations} */
+  /** {@inheritDoc StationPartialRobot.uploadMapStations} */
   uploadMapStations(request: UploadMapStationsRequest, context: Context): UploadMapStationsResponse
 
-  /** {@inheritDoc StationRobot.addStation} */
+  /** {@inheritDoc StationPartialRobot.addStation} */
   addStation(): AddStationResponse
 
-  /** {@inheritDoc StationRobot.deleteStation} */
+  /** {@inheritDoc StationPartialRobot.deleteStation} */
   deleteStation(): DeleteStationResponse
 
-  /** {@inheritDoc StationRobot.renameStation} */
+  /** {@inheritDoc StationPartialRobot.renameStation} */
   renameStation(): RenameStationResponse
 }

@@ -568,8 +568,10 @@ export type StatusReport =
    */
   Reported<'RobotStatus', RobotStatus>
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface StatusRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface StatusPartialRobot {
   /**
    * 获取异常列表
    * List the faults
@@ -584,7 +586,7 @@ export interface StatusRobot {
    * - 文档：`docs-site/reference/commands/list_faults.md`
    * - Docs: `docs-site/en/reference/commands/list_faults.md`
    */
-  listFaults(request: ListFaultsRequest, context: Context): Answer<ListFaultsResponse>
+  listFaults?(request: ListFaultsRequest, context: Context): Answer<ListFaultsResponse>
 
   /**
    * 获取自检结果
@@ -601,15 +603,18 @@ export interface StatusRobot {
    * - 文档：`docs-site/reference/commands/get_self_check.md`
    * - Docs: `docs-site/en/reference/commands/get_self_check.md`
    */
-  getSelfCheck(request: GetSelfCheckRequest, context: Context): Answer<GetSelfCheckResponse>
+  getSelfCheck?(request: GetSelfCheckRequest, context: Context): Answer<GetSelfCheckResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface StatusRobot extends Required<StatusPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface StatusExamples {
-  /** {@inheritDoc StatusRobot.listFaults} */
+  /** {@inheritDoc StatusPartialRobot.listFaults} */
   listFaults(): ListFaultsResponse
 
-  /** {@inheritDoc StatusRobot.getSelfCheck} */
+  /** {@inheritDoc StatusPartialRobot.getSelfCheck} */
   getSelfCheck(): GetSelfCheckResponse
 }
 

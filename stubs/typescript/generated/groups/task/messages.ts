@@ -590,8 +590,10 @@ export type TaskReport =
    */
   | Reported<'TaskProgress', TaskProgress>
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface TaskRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface TaskPartialRobot {
   /**
    * 创建巡游/送物任务
    * Create a patrol or delivery task
@@ -608,7 +610,7 @@ export interface TaskRobot {
    * - 文档：`docs-site/reference/commands/create_task.md`
    * - Docs: `docs-site/en/reference/commands/create_task.md`
    */
-  createTask(request: CreateTaskRequest, context: Context): Answer<CreateTaskResponse>
+  createTask?(request: CreateTaskRequest, context: Context): Answer<CreateTaskResponse>
 
   /**
    * 获取任务状态
@@ -620,15 +622,18 @@ export interface TaskRobot {
    * - 文档：`docs-site/reference/commands/get_task_status.md`
    * - Docs: `docs-site/en/reference/commands/get_task_status.md`
    */
-  getTaskStatus(request: GetTaskStatusRequest, context: Context): Answer<GetTaskStatusResponse>
+  getTaskStatus?(request: GetTaskStatusRequest, context: Context): Answer<GetTaskStatusResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface TaskRobot extends Required<TaskPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface TaskExamples {
-  /** {@inheritDoc TaskRobot.createTask} */
+  /** {@inheritDoc TaskPartialRobot.createTask} */
   createTask(request: CreateTaskRequest, context: Context): CreateTaskResponse
 
-  /** {@inheritDoc TaskRobot.getTaskStatus} */
+  /** {@inheritDoc TaskPartialRobot.getTaskStatus} */
   getTaskStatus(): GetTaskStatusResponse
 }
 

@@ -122,8 +122,10 @@ export interface UnnamedCalls {
   unnamed0460(request?: Unnamed0460Request, options?: CallOptions): Promise<Unnamed0460Response>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface UnnamedRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface UnnamedPartialRobot {
   /**
    * 未命名指令（0x0309）
    * Unnamed command (0x0309)
@@ -140,7 +142,7 @@ export interface UnnamedRobot {
    * - 文档：`docs-site/reference/commands/unnamed_0309.md`
    * - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
    */
-  unnamed0309(request: Unnamed0309Request, context: Context): Answer<Unnamed0309Response>
+  unnamed0309?(request: Unnamed0309Request, context: Context): Answer<Unnamed0309Response>
 
   /**
    * 未命名指令（0x0460）
@@ -157,14 +159,17 @@ export interface UnnamedRobot {
    * - 文档：`docs-site/reference/commands/unnamed_0460.md`
    * - Docs: `docs-site/en/reference/commands/unnamed_0460.md`
    */
-  unnamed0460(request: Unnamed0460Request, context: Context): Answer<Unnamed0460Response>
+  unnamed0460?(request: Unnamed0460Request, context: Context): Answer<Unnamed0460Response>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface UnnamedRobot extends Required<UnnamedPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface UnnamedExamples {
-  /** {@inheritDoc UnnamedRobot.unnamed0309} */
+  /** {@inheritDoc UnnamedPartialRobot.unnamed0309} */
   unnamed0309(request: Unnamed0309Request, context: Context): Unnamed0309Response
 
-  /** {@inheritDoc UnnamedRobot.unnamed0460} */
+  /** {@inheritDoc UnnamedPartialRobot.unnamed0460} */
   unnamed0460(request: Unnamed0460Request, context: Context): Unnamed0460Response
 }

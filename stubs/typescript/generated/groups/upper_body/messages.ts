@@ -178,8 +178,10 @@ export interface UpperBodyCalls {
   getUpperBodyStatus(request?: GetUpperBodyStatusRequest, options?: CallOptions): Promise<GetUpperBodyStatusResponse>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface UpperBodyRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface UpperBodyPartialRobot {
   /**
    * 查询上装
    * Get the upper body's status
@@ -196,11 +198,14 @@ export interface UpperBodyRobot {
    * - 文档：`docs-site/reference/commands/get_upper_body_status.md`
    * - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`
    */
-  getUpperBodyStatus(request: GetUpperBodyStatusRequest, context: Context): Answer<GetUpperBodyStatusResponse>
+  getUpperBodyStatus?(request: GetUpperBodyStatusRequest, context: Context): Answer<GetUpperBodyStatusResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface UpperBodyRobot extends Required<UpperBodyPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface UpperBodyExamples {
-  /** {@inheritDoc UpperBodyRobot.getUpperBodyStatus} */
+  /** {@inheritDoc UpperBodyPartialRobot.getUpperBodyStatus} */
   getUpperBodyStatus(): GetUpperBodyStatusResponse
 }

@@ -102,14 +102,17 @@ export interface DriveStreams {
   sendPictures(id: number, content: Uint8Array): Promise<void>
 }
 
-/** The commands of the group as a robot handles them: methods of `Robot`. */
-export interface DriveRobot {
+/** The commands of the group, each optional: methods of `PartialRobot`. */
+export interface DrivePartialRobot {
   /** Asks for the name. */
-  getName(request: GetNameRequest, context: Context): Answer<GetNameResponse>
+  getName?(request: GetNameRequest, context: Context): Answer<GetNameResponse>
 
   /** Drives somewhere. */
-  startDrive(request: StartDriveRequest, context: Context): Answer<StartDriveResponse>
+  startDrive?(request: StartDriveRequest, context: Context): Answer<StartDriveResponse>
 }
+
+/** The commands of the group: methods of `Robot`. */
+export interface DriveRobot extends Required<DrivePartialRobot> {}
 
 /** The examples of the group: methods of `ExampleRobot`. */
 export interface DriveExamples {

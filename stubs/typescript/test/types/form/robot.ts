@@ -7,7 +7,10 @@ import type * as messages from './messages.ts'
 import { reports, service, toy } from './protocol_of.ts'
 
 /** A complete robot: one method per command. It refuses by throwing a `Refusal`. */
-export interface Robot extends messages.DriveRobot {
+export interface Robot extends messages.DriveRobot, Pick<PartialRobot, 'passThrough' | 'unknown'> {}
+
+/** The methods of each group of commands. Each is optional. */
+export interface PartialRobot extends messages.DrivePartialRobot {
   /** Codes 500 to 599 without a separate method: JSON in and out. Refused as unknown if absent. */
   passThrough?(request: RawRequest, context: Context): Answer<string>
 
@@ -16,7 +19,7 @@ export interface Robot extends messages.DriveRobot {
 }
 
 /** A robot with some of the commands. The others are refused as not implemented. */
-export type PartialRobot = Partial<Robot>
+export abstract class PartialRobot {}
 
 /** Serves apps. */
 export function serve(platform: ServerPlatform, robot: PartialRobot, config: ServerConfig = {}): Promise<Server> {
@@ -60,9 +63,9 @@ export class Reporter {
 }
 
 /** A robot that lacks a method: the compiler refuses `implements Robot` for it. */
-export class Half implements PartialRobot {
+export class Half extends PartialRobot {
   /** Refuses with a declared error. */
-  startDrive(): never {
+  override startDrive(): never {
     throw Refusal.declared(commands.startDrive, 'Blocked')
   }
 }

@@ -215,8 +215,10 @@ export interface PlaceStreams {
   subscribeSight(): Subscription<Uint8Array>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface PlaceRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface PlacePartialRobot {
   /**
    * 定位
    * Locate
@@ -225,7 +227,7 @@ export interface PlaceRobot {
    *
    * Spec: `commands.locate` in `spec/commands/place.yaml`.
    */
-  locate(request: LocateRequest, context: Context): Answer<LocateResponse>
+  locate?(request: LocateRequest, context: Context): Answer<LocateResponse>
 
   /**
    * 闪烁
@@ -237,7 +239,7 @@ export interface PlaceRobot {
    *
    * Spec: `commands.blink` in `spec/commands/place.yaml`.
    */
-  blink(request: BlinkRequest, context: Context): Answer<BlinkResponse>
+  blink?(request: BlinkRequest, context: Context): Answer<BlinkResponse>
 
   /**
    * 发声
@@ -247,18 +249,21 @@ export interface PlaceRobot {
    *
    * Spec: `commands.sound` in `spec/commands/place.yaml`.
    */
-  sound(request: SoundRequest, context: Context): Answer<SoundResponse>
+  sound?(request: SoundRequest, context: Context): Answer<SoundResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface PlaceRobot extends Required<PlacePartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface PlaceExamples {
-  /** {@inheritDoc PlaceRobot.locate} */
+  /** {@inheritDoc PlacePartialRobot.locate} */
   locate(): LocateResponse
 
-  /** {@inheritDoc PlaceRobot.blink} */
+  /** {@inheritDoc PlacePartialRobot.blink} */
   blink(): BlinkResponse
 
-  /** {@inheritDoc PlaceRobot.sound} */
+  /** {@inheritDoc PlacePartialRobot.sound} */
   sound(request: SoundRequest, context: Context): SoundResponse
 }
 

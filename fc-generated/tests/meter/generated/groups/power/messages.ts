@@ -887,8 +887,10 @@ export interface PowerStreams {
   sendReadings(id: number, content: Readings): Promise<void>
 }
 
-/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
-export interface PowerRobot {
+/**
+ * 本组的指令，都可以不写：`PartialRobot` 的方法。The commands of the group, each optional: methods of `PartialRobot`.
+ */
+export interface PowerPartialRobot {
   /**
    * 读取电能
    * Read the power
@@ -897,7 +899,7 @@ export interface PowerRobot {
    *
    * Spec: `commands.read_power` in `spec/commands/power.yaml`.
    */
-  readPower(request: ReadPowerRequest, context: Context): Answer<ReadPowerResponse>
+  readPower?(request: ReadPowerRequest, context: Context): Answer<ReadPowerResponse>
 
   /**
    * 设置费率
@@ -913,7 +915,7 @@ export interface PowerRobot {
    *
    * Spec: `commands.set_tariff` in `spec/commands/power.yaml`.
    */
-  setTariff(request: SetTariffRequest, context: Context): Answer<SetTariffResponse>
+  setTariff?(request: SetTariffRequest, context: Context): Answer<SetTariffResponse>
 
   /**
    * 合闸
@@ -934,7 +936,7 @@ export interface PowerRobot {
    *
    * Spec: `commands.close_switch` in `spec/commands/power.yaml`.
    */
-  closeSwitch(request: CloseSwitchRequest, context: Context): Answer<CloseSwitchResponse>
+  closeSwitch?(request: CloseSwitchRequest, context: Context): Answer<CloseSwitchResponse>
 
   /**
    * 开始或停止发送负荷
@@ -944,21 +946,24 @@ export interface PowerRobot {
    *
    * Spec: `commands.watch_load` in `spec/commands/power.yaml`.
    */
-  watchLoad(request: WatchLoadRequest, context: Context): Answer<WatchLoadResponse>
+  watchLoad?(request: WatchLoadRequest, context: Context): Answer<WatchLoadResponse>
 }
+
+/** 本组的指令，`Robot` 的方法。The commands of the group: methods of `Robot`. */
+export interface PowerRobot extends Required<PowerPartialRobot> {}
 
 /** 本组指令的示例：`ExampleRobot` 的方法。The examples of the group: methods of `ExampleRobot`. */
 export interface PowerExamples {
-  /** {@inheritDoc PowerRobot.readPower} */
+  /** {@inheritDoc PowerPartialRobot.readPower} */
   readPower(): ReadPowerResponse
 
-  /** {@inheritDoc PowerRobot.setTariff} */
+  /** {@inheritDoc PowerPartialRobot.setTariff} */
   setTariff(): SetTariffResponse
 
-  /** {@inheritDoc PowerRobot.closeSwitch} */
+  /** {@inheritDoc PowerPartialRobot.closeSwitch} */
   closeSwitch(request: CloseSwitchRequest, context: Context): CloseSwitchResponse
 
-  /** {@inheritDoc PowerRobot.watchLoad} */
+  /** {@inheritDoc PowerPartialRobot.watchLoad} */
   watchLoad(): WatchLoadResponse
 }
 
