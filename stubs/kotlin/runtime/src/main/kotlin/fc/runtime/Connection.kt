@@ -184,6 +184,9 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     @JvmSynthetic
     public suspend fun closed(): Loss = core.life.closed()
 
+    /** [closed] for Java. */
+    public fun closedAsync(): CompletableFuture<Loss> = SCOPE.future { closed() }
+
     /** Number of calls in flight. */
     public val inFlight: Int get() = core.inFlight
 

@@ -101,6 +101,12 @@ public class DataConnection internal constructor(private val core: DataCore) : A
         }
     }
 
+    /** [connected] for Java. */
+    public fun connectedAsync(): CompletableFuture<Void?> = SCOPE.future {
+        connected()
+        null
+    }
+
     /**
      * Returns the next frame. While the app does not take received frames, the client stops reading from the robot.
      *
@@ -178,6 +184,9 @@ public class DataConnection internal constructor(private val core: DataCore) : A
     /** Waits until the connection has ended for good, and returns the reason. */
     @JvmSynthetic
     public suspend fun closed(): Loss = core.life.closed()
+
+    /** [closed] for Java. */
+    public fun closedAsync(): CompletableFuture<Loss> = SCOPE.future { closed() }
 
     /** Closes the connection. A frame that is being sent is finished if the robot takes it within a second. */
     override fun close(): Unit = core.execute { core.close() }

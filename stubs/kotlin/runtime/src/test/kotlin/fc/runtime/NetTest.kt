@@ -255,11 +255,18 @@ internal fun netTests(tests: Tests) {
         val app = Connection.connect(Toy, robot.config().limits(Toy.defaults.limits.inFlight(1)))
         kotlinx.coroutines.coroutineScope {
             val call = launch(Dispatchers.Default) { app.call(Toy.GO, Go.of(1)) }
-            robot.begun.await()
+            val context = robot.begun.await()
+            expect(LOCAL, (context.peer as InetSocketAddress).hostString)
+            expect(true, context.timeMs != null)
             expect("busy", callError { app.call(Toy.ECHO, Echo.of("one too many")) })
             call.cancelAndJoin()
             expect("room", app.call(Toy.ECHO, Echo.of("room")).text)
         }
+        val future = app.callAsync(Toy.GO, Go.of(1))
+        while (app.inFlight == 0) kotlinx.coroutines.yield()
+        future.cancel(true)
+        while (app.inFlight == 1) kotlinx.coroutines.yield()
+        expect("room", app.call(Toy.ECHO, Echo.of("room")).text)
         gate.complete(Unit)
         robot.server.close()
         app.close()
@@ -293,6 +300,11 @@ internal fun netTests(tests: Tests) {
         val refused = runCatching { app.callAsync(Toy.ECHO, Echo.of("refuse")).get(9, SECONDS) }.exceptionOrNull()
         expect("refused", (refused?.cause as CallError).name)
         expect("future", app.callAsync(Toy.ECHO, Echo.of("future")).get(9, SECONDS).text)
+        val data = app.data()
+        data.connectedAsync().get(9, SECONDS)
+        expect(true, data.state.isConnected)
+        data.close()
+        expect("closed_here", data.closedAsync().get(9, SECONDS).name)
         val heard = CompletableDeferred<Int>()
         val listening = app.onReport { heard.complete((it.message as Moved).metres) }
         robot.server.pushAsync(Audience.ALL, Toy.MOVED, Moved.of(8)).get(9, SECONDS)
@@ -302,6 +314,7 @@ internal fun netTests(tests: Tests) {
         robot.server.shutdownAsync(1, SECONDS).get(9, SECONDS)
         expect(0, robot.server.pushAsync(Audience.ALL, Toy.MOVED, Moved.of(8)).get(9, SECONDS).size)
         app.close()
+        expect("closed_here", app.closedAsync().get(9, SECONDS).name)
         (app.core.loop as NioLoop).end()
         expect("closed", callError { app.call(Toy.ECHO, Echo.of("to nobody")) })
     }
@@ -436,7 +449,7 @@ private fun dataTests(tests: Tests) {
         val app = robot.app()
         app.call(Toy.ECHO, Echo.of("I am alone here"))
         val data = app.data()
-        data.connected()
+        expect(1L, data.states().first { it.isConnected }.connects)
         val streams = robot.server.streams()
         data.send(5, 7, ByteArray(1_000_000) { it.toByte() })
         val came = streams.receive()!!
