@@ -152,6 +152,13 @@ int main(int count, char** arguments) {
   const auto many = fc_runtime::from_json<OneKey<int>>(lists + R"("a":0})", few);
   tally.check(!many && many.error().name() == "too_many_values" && many.error().offset < 20'000,
               "a hundred thousand lists");
+  fc_runtime::Allowance small;
+  small.list_bytes = 1000;
+  std::string numbers = "1";
+  for (int at = 0; at < 1000; ++at) numbers += ",1";
+  const auto wide = fc_runtime::from_json<OneKey<std::vector<std::int32_t>>>(
+      "{\"value\":[" + numbers + "]}", small);
+  tally.check(!wide && wide.error().name() == "lists_too_large", "a thousand numbers");
   // Nesting far beyond the stack is refused by the depth limit.
   const auto deep =
       fc_runtime::from_json<OneKey<fc_runtime::Json>>("{\"value\":" + std::string(100'000, '['));

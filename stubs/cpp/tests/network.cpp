@@ -181,9 +181,10 @@ void calls(Tally& tally) {
   last.reset();
   over.get_future().get();
 
+  tally.check(!app.closed(milliseconds(0)), "it is open");
   app.close();
-  auto states = app.states();
-  while (app.state().status != ConnectionStatus::Closed) static_cast<void>(states.next(kPatience));
+  const auto why = app.closed(kPatience);
+  tally.check(why && why->kind == LossKind::Here, "the end has a cause");
   const auto closed = app.call(Echo{"c", {}});
   tally.check(!closed && closed.error().name() == "closed", "after the end");
 }

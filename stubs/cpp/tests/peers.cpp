@@ -431,6 +431,32 @@ void patience(tests::Tally& tally) {
   tally.check(core.is_done(id) && core.counters().connections_timed_out == 1, "now it is");
 }
 
+/// A frame that arrives more slowly than `least_rate` ends its connection, and a faster one does not.
+void rates(tests::Tally& tally) {
+  std::string frame;
+  static_cast<void>(fc_runtime::Encoder(protocol())
+                        .append(frame, {false, 1, tests::kEcho, 1}, std::string(100'000, ' ')));
+  for (const std::size_t bytes : {std::size_t{1}, std::size_t{2000}}) {
+    fc_runtime::RobotSettings settings;
+    settings.limits = protocol().defaults.limits;
+    settings.stall_timeout = milliseconds(1000);
+    settings.least_rate = 1000;
+    RobotCore core(protocol(), settings, [](const fc_runtime::Request&) {});
+    Instant now = Instant() + std::chrono::hours(1);
+    const auto id = core.connect(now).value();
+    std::string_view rest = frame;
+    core.received(id, rest.substr(0, 100), now);
+    rest.remove_prefix(100);
+    for (int turn = 0; turn < 4; ++turn) {
+      now += milliseconds(900);
+      core.received(id, rest.substr(0, bytes), now);
+      rest.remove_prefix(bytes);
+      core.advance(now);
+    }
+    tally.check(core.is_done(id) == (bytes == 1), std::to_string(bytes) + " bytes in 0.9 s");
+  }
+}
+
 /// The robot stops reading from an app that sends requests and does not read responses.
 void back_pressure(tests::Tally& tally) {
   fc_runtime::RobotSettings settings;
@@ -466,6 +492,7 @@ int main(int count, char** arguments) {
   tests::Tally tally;
   tests::hold(tally, arguments[1], "peer", run);
   patience(tally);
+  rates(tally);
   back_pressure(tally);
   return tally.outcome("scripts of peers", 50);
 }

@@ -25,7 +25,8 @@ class Docking : public fc::PartialRobot {
   fc_runtime::Replied<fc::GetRobotSnResponse> get_robot_sn(
       const fc_runtime::Context& context, const fc::GetRobotSnRequest& /*request*/) override {
     auto response = fc_runtime::example<fc::GetRobotSnResponse>();
-    response.data.robot_sn = context.time_ms ? "100132001234568" : "100132001234569";
+    const bool is_known = context.time_ms && context.address == "127.0.0.1";
+    response.data.robot_sn = is_known ? "100132001234568" : "100132001234569";
     return response;
   }
   fc_runtime::Replied<fc::StartRechargeResponse> start_recharge(

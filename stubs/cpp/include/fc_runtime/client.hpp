@@ -162,6 +162,8 @@ class Connection {
   [[nodiscard]] ConnectionState state() const;
   /// Returns an iterator over the states.
   [[nodiscard]] ConnectionStates states() const;
+  /// Waits for the end of the connection. Returns the cause, or no value if it does not end in time.
+  [[nodiscard]] std::optional<Loss> closed(std::chrono::milliseconds wait) const;
   /// Closes the connection for good.
   void close() const;
   /// The counters of the connection.

@@ -57,6 +57,8 @@ struct Context {
   Allowance allowance;
   /// Greatest age of a request that is still handled.
   std::optional<std::chrono::milliseconds> max_age;
+  /// The IP address of the app.
+  std::string address;
 
   /// Returns `true` once the app has stopped waiting for the response. Check it in long handlers.
   [[nodiscard]] bool is_abandoned() const { return abandoned && abandoned->load(); }

@@ -313,6 +313,18 @@ std::optional<ConnectionState> ConnectionStates::next(std::chrono::milliseconds 
   return impl_->life().next(seen_, wait);
 }
 
+std::optional<Loss> Connection::closed(std::chrono::milliseconds wait) const {
+  using std::chrono::steady_clock;
+  const auto until = detail::after(steady_clock::now(), wait);
+  ConnectionStates all = states();
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - steady_clock::now());
+    const auto next = all.next(std::max(left, std::chrono::milliseconds(0)));
+    if (!next) return std::nullopt;
+    if (next->status == ConnectionStatus::Closed) return next->why;
+  }
+}
+
 void Connection::close() const {
   auto* impl = handle_->impl.get();
   impl->post([impl] { impl->close(Loss{LossKind::Here, {}, {}}); });

@@ -92,6 +92,7 @@ class ServerImpl {
       context.connection = id;
       context.code = frame.code;
       context.id = frame.id;
+      context.address = address_of(id);
       note_failure(context, std::make_exception_ptr(UnsendableResponse(error)));
     });
     data_.on_held = [this] {
@@ -146,6 +147,7 @@ class ServerImpl {
   template <class Peers, class IsSilent, class GiveWay>
   [[nodiscard]] bool admit(const Crowd<Peers>& crowd, const std::string& address,
                            const IsSilent& is_silent, const GiveWay& give_way);
+  [[nodiscard]] std::string address_of(ConnectionId id) const;
   void begin(const Request& request);
   [[nodiscard]] Handled handle(const Context& context, std::string_view text);
   void note_failure(const Context& context, const std::exception_ptr& error);
@@ -353,8 +355,13 @@ void ServerImpl::forget(ConnectionId id) {
   note();
 }
 
+std::string ServerImpl::address_of(ConnectionId id) const {
+  const auto found = peers_.find(id);
+  return found == peers_.end() ? std::string() : found->second.address;
+}
+
 void ServerImpl::begin(const Request& request) {
-  const auto work = [this, request] {
+  const auto work = [this, request, address = address_of(request.connection)] {
     auto text = request.text.lock();
     if (!text) {
       // The app has just disconnected.
@@ -367,7 +374,8 @@ void ServerImpl::begin(const Request& request) {
                           std::nullopt,
                           request.abandoned,
                           settings_.limits.json(),
-                          config_.max_age ? config_.max_age : protocol_->defaults.max_age};
+                          config_.max_age ? config_.max_age : protocol_->defaults.max_age,
+                          address};
     Handled handled = handle(context, *text);
     // Frees its memory before the server measures the use of memory.
     text.reset();
