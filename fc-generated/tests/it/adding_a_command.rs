@@ -64,7 +64,7 @@ fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
     for (path, part) in [
         (messages.as_str(), format!("pub struct {request} {{")),
         (&messages, "pub level: u8,".to_owned()),
-        (&messages, format!("pub async fn {name}(")),
+        (&messages, format!("pub fn {name}<'a>(")),
         ("fc-generated/src/robot.rs", format!("async fn {name}(")),
         (
             "fc-generated/src/descriptors.rs",
@@ -196,7 +196,8 @@ fn squeezed(text: &str) -> String {
     let lines = lines.filter(|line| !line.trim_start().starts_with("//"));
     let text: String = lines.flat_map(str::split_whitespace).collect();
     let text = text.replace(",)", ")");
-    text.replace("messages::", "").replace("fc_runtime::", "")
+    let paths = ["messages::", "fc_runtime::", "crate::"];
+    paths.iter().fold(text, |text, path| text.replace(path, ""))
 }
 
 /// The command that a readme adds: its one block of YAML.

@@ -64,6 +64,13 @@ fn interface(declared: &mut Declared, name: &str, node: &Node) {
         let key = word(signature.trim_start_matches("readonly "));
         let is_required = !signature.contains(&format!("{key}?"));
         let is_asked = is_message || name.ends_with("Robot");
+        // `…Robot` requires each method of the `…PartialRobot` of its group.
+        if let Some(group) = name
+            .strip_suffix("PartialRobot")
+            .filter(|it| !it.is_empty())
+        {
+            declared.demand(format!("{group}Robot.{key}"), signature);
+        }
         if is_required && is_asked && key != "extra" {
             declared.demand(format!("{name}.{key}"), signature);
         } else {
