@@ -1,5 +1,6 @@
 //! `blocking.rs`: the app's stub without `async`, for tools and tests.
 
+use super::client::missed;
 use super::context::Context;
 use super::source::Source;
 use crate::package::docs::Docs;
@@ -114,17 +115,7 @@ pub fn recv_timeout(&mut self, timeout: Duration) -> Result<AnyReport, ReportErr
     Ok(AnyReport::from_raw(report)?)
 }",
         );
-        out.documented(&Docs::written([
-            "返回上次调用以来错过的上报数：自己的队列已满，其他接收端收到了它们。",
-            "Returns the number of reports that this receiver missed since the last call: its queue was full,\n\
-             and another receiver took them.",
-        ]));
-        out.line(
-            "\
-pub fn missed(&mut self) -> u64 {
-    self.0.missed()
-}",
-        );
+        missed(out);
     });
     out.blank();
     out.line(

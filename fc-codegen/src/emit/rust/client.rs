@@ -212,17 +212,7 @@ pub async fn recv(&mut self) -> Option<Result<AnyReport, BodyError>> {
     self.0.recv().await.map(AnyReport::from_raw)
 }",
         );
-        out.documented(&Docs::written([
-            "返回上次调用以来错过的上报数：自己的队列已满，其他接收端收到了它们。",
-            "Returns the number of reports that this receiver missed since the last call: its queue was full,\n\
-             and another receiver took them.",
-        ]));
-        out.line(
-            "\
-pub fn missed(&mut self) -> u64 {
-    self.0.missed()
-}",
-        );
+        missed(out);
     });
     out.blank();
     out.line(
@@ -266,4 +256,19 @@ fn any_report(out: &mut Source, protocol: &str, reports: &[Call<'_>]) {
 {unknown}(RawReport),"
         ));
     });
+}
+
+/// Writes the method that counts missed reports, of a receiver with and without `async`.
+pub fn missed(out: &mut Source) {
+    out.documented(&Docs::written([
+        "返回上次调用以来错过的上报数：自己的队列已满，其他接收端收到了它们。",
+        "Returns the number of reports that this receiver missed since the last call: its queue was full,\n\
+         and another receiver took them.",
+    ]));
+    out.line(
+        "\
+pub fn missed(&mut self) -> u64 {
+    self.0.missed()
+}",
+    );
 }
