@@ -2,6 +2,8 @@
 
 package course
 
+import fc.runtime.CallError
+import fc.runtime.CallOptions
 import fc.runtime.ClientConfig
 import fc.runtime.Command
 import fc.runtime.ConditionError
@@ -10,6 +12,7 @@ import fc.runtime.Server
 import fc.runtime.ServerConfig
 import java.math.BigInteger
 import java.util.concurrent.TimeUnit.MINUTES
+import java.util.concurrent.TimeUnit.SECONDS
 import kotlinx.coroutines.runBlocking
 import odd_line.A
 import odd_line.Client
@@ -35,6 +38,8 @@ fun main(): Unit = runBlocking {
     Client.connect(config).use { client ->
         for (command in OddLine.commands) call(client, command)
         JavaCourse.use(client)
+        val late = runCatching { client.drive(DriveRequest.example(), CallOptions().timeout(0, SECONDS)) }.exceptionOrNull()
+        check(late is CallError && late.name == "timeout") { "$late" }
     }
     server.close()
 

@@ -1,6 +1,8 @@
 package course;
 
+import fc.runtime.CallOptions;
 import java.util.concurrent.CompletableFuture;
+import java.util.concurrent.TimeUnit;
 import odd_line.Client;
 import odd_line.DriveRequest;
 import odd_line.DriveResponse;
@@ -18,7 +20,7 @@ final class JavaCourse {
         if (!request.toBuilder().name("n").build().getName().equals("n") || request.getMood() != Going.VALUE) {
             throw new AssertionError(request);
         }
-        CompletableFuture<DriveResponse> driven = client.driveAsync(request);
+        CompletableFuture<DriveResponse> driven = client.driveAsync(request, new CallOptions().timeout(1, TimeUnit.MINUTES));
         if (driven.join().getThere() == null) {
             throw new AssertionError(driven.join());
         }
