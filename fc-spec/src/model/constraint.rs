@@ -246,3 +246,25 @@ fn floor(number: &Number) -> i128 {
         Number::Float(value) => value.floor() as i128,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_compare_as_decoders_compare_them() {
+        let (int, float) = (Number::Int, Number::Float);
+        for (one, other, expected) in [
+            (float(-0.0), int(0), Ordering::Equal),
+            (float(0.5), int(1), Ordering::Less),
+            (int(2), float(1.5), Ordering::Greater),
+            (
+                int(i128::from(u64::MAX)),
+                int(i128::from(u64::MAX) - 1),
+                Ordering::Greater,
+            ),
+        ] {
+            assert_eq!(one.compare(&other), expected, "{one:?} and {other:?}");
+        }
+    }
+}
