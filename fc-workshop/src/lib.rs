@@ -1,0 +1,4 @@
+//! Tools that speak a protocol from its spec alone, without generated code.
+//!
+//! **Architecture invariant.** This crate contains no fact about a protocol and does not depend on generated code. All
+//! facts come from the model, so a tool uses an edited spec at once.
