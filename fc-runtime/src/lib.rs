@@ -114,7 +114,7 @@ pub use server::{
     Service,
 };
 #[cfg(feature = "frames")]
-pub use session::{Busy, Due, Incoming, Session};
+pub use session::{Busy, Due, Incoming, Session, SessionRules};
 #[cfg(feature = "net")]
 pub use stream::StreamFrame;
 pub use wire::{Header, Limits};

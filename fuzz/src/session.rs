@@ -4,7 +4,7 @@
 
 use crate::input::Input;
 use fc_generated::Fc;
-use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session};
+use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session, SessionRules};
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
@@ -55,7 +55,7 @@ pub fn session(data: &[u8]) {
         0 => u32::MAX - u32::from(input.byte()),
         _ => input.u32(),
     };
-    let mut session: Session<Fc, u32> = Session::new(&limits, ack, first_id);
+    let mut session: Session<u32> = Session::new(SessionRules::of::<Fc>(), &limits, ack, first_id);
     let start = Instant::now();
     let mut now = start;
     let mut model = Model {
@@ -91,7 +91,7 @@ pub fn session(data: &[u8]) {
 
 fn open(
     input: &mut Input<'_>,
-    session: &mut Session<Fc, u32>,
+    session: &mut Session<u32>,
     model: &mut Model,
     now: Instant,
     limit: usize,
@@ -137,7 +137,7 @@ fn pick(input: &mut Input<'_>, model: &Model) -> Option<(u32, FrameId)> {
     Some((u32::try_from(index).ok()?, model.opened[index]))
 }
 
-fn answer(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model, now: Instant) {
+fn answer(input: &mut Input<'_>, session: &mut Session<u32>, model: &mut Model, now: Instant) {
     let Some((token, frame)) = pick(input, model) else {
         return;
     };
@@ -157,7 +157,7 @@ fn answer(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Mod
     }
 }
 
-fn cancel(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model) {
+fn cancel(input: &mut Input<'_>, session: &mut Session<u32>, model: &mut Model) {
     let Some((token, frame)) = pick(input, model) else {
         return;
     };
@@ -172,7 +172,7 @@ fn cancel(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Mod
 
 fn report(
     input: &mut Input<'_>,
-    session: &mut Session<Fc, u32>,
+    session: &mut Session<u32>,
     model: &mut Model,
     now: Instant,
     ack: AckPolicy,
@@ -210,7 +210,7 @@ fn report(
     }
 }
 
-fn lose(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model) {
+fn lose(input: &mut Input<'_>, session: &mut Session<u32>, model: &mut Model) {
     let every = usize::from(input.byte() % 4) + 1;
     let mut count = 0;
     let ended = session.end_if(|_, _| {
@@ -223,12 +223,7 @@ fn lose(input: &mut Input<'_>, session: &mut Session<Fc, u32>, model: &mut Model
 }
 
 /// A frame with any header at all.
-fn anything(
-    input: &mut Input<'_>,
-    session: &mut Session<Fc, u32>,
-    model: &mut Model,
-    now: Instant,
-) {
+fn anything(input: &mut Input<'_>, session: &mut Session<u32>, model: &mut Model, now: Instant) {
     let frame = FrameId {
         response: input.byte() % 2 == 1,
         kind: input.byte() % 5,
@@ -248,7 +243,7 @@ fn anything(
     }
 }
 
-fn due(session: &mut Session<Fc, u32>, model: &mut Model, now: Instant) {
+fn due(session: &mut Session<u32>, model: &mut Model, now: Instant) {
     while let Some(due) = session.due(now) {
         match due {
             Due::Again(frame, token) => {

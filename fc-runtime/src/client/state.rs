@@ -11,7 +11,7 @@ use crate::frame::{Body, Encoder, FrameError, Staged};
 use crate::log_limiter::LogLimiter;
 use crate::metrics::{CLIENT, Counter, Gauge, Held, Operations};
 use crate::protocol::Protocol;
-use crate::session::Session;
+use crate::session::{Session, SessionRules};
 use crate::sync::lock;
 use crate::wire::Limits;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -110,7 +110,7 @@ pub(super) struct State<P> {
     pub(super) alarm: Option<Instant>,
     /// Encoder of acknowledgements.
     pub(super) encoder: Encoder<P>,
-    pub(super) session: Session<P, usize>,
+    pub(super) session: Session<usize>,
     pub(super) slots: Slots,
     pub(super) reports: Queues,
     pub(super) report_watchdog: ReportWatchdog,
@@ -269,7 +269,12 @@ impl<P: Protocol> Inner<P> {
                 socket: None,
                 alarm: None,
                 encoder: config.encoder(),
-                session: Session::new(&limits, P::DEFAULTS.ack, config.connection.first_id()),
+                session: Session::new(
+                    SessionRules::of::<P>(),
+                    &limits,
+                    P::DEFAULTS.ack,
+                    config.connection.first_id(),
+                ),
                 slots: Slots::default(),
                 reports: Queues::new(limits.queued_reports, config.connection.queued_bytes::<P>()),
                 report_watchdog: ReportWatchdog::of::<P>(),

@@ -9,7 +9,7 @@ use super::detached::DetachedHandlers;
 use super::output::Output;
 use super::push::{AckOutcome, Queued};
 use crate::protocol::Protocol;
-use crate::session::Session;
+use crate::session::{Session, SessionRules};
 use crate::sync::{lock, register};
 use std::collections::VecDeque;
 use std::future::poll_fn;
@@ -21,9 +21,9 @@ use std::task::{Poll, Waker};
 use tokio::sync::Notify;
 
 /// The state that pushes and the driver share.
-pub(super) struct PeerState<P: Protocol> {
+pub(super) struct PeerState {
     /// Reports in flight.
-    pub(super) session: Session<P, Queued>,
+    pub(super) session: Session<Queued>,
     /// Reports not yet sent, oldest first.
     pub(super) queue: VecDeque<Queued>,
     /// Waker of the driver while it waits.
@@ -40,7 +40,7 @@ pub(super) struct Peer<P: Protocol> {
     pub(super) detached: Arc<DetachedHandlers>,
     pub(super) memory: ConnectionMemory,
     output: Mutex<Output<P>>,
-    state: Mutex<PeerState<P>>,
+    state: Mutex<PeerState>,
     unsent: AtomicUsize,
     unusable: AtomicU32,
     draining: AtomicBool,
@@ -66,6 +66,7 @@ impl<P: Protocol> Peer<P> {
         memory: ConnectionMemory,
     ) -> Self {
         let session = Session::new(
+            SessionRules::of::<P>(),
             &settings.limits,
             P::DEFAULTS.ack,
             settings.connection.first_id(),
@@ -254,7 +255,7 @@ impl<P: Protocol> Peer<P> {
         lock(&self.output)
     }
 
-    pub(super) fn lock(&self) -> MutexGuard<'_, PeerState<P>> {
+    pub(super) fn lock(&self) -> MutexGuard<'_, PeerState> {
         lock(&self.state)
     }
 

@@ -17,8 +17,33 @@ use crate::protocol::Protocol;
 use crate::wire::{Header, Limits};
 use outgoing::Outgoing;
 use seen::Seen;
-use std::marker::PhantomData;
 use std::time::Instant;
+
+/// The numbers of a protocol that its sessions need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SessionRules {
+    /// Largest message id; all of its bits are set.
+    pub id_max: u32,
+    /// Default number of requests in flight, which a peer may use.
+    pub in_flight: usize,
+    /// Kind of a report and of its acknowledgement.
+    pub report: u8,
+    /// Kind of a frame of raw bytes.
+    pub stream: u8,
+}
+
+impl SessionRules {
+    /// Returns the rules of a protocol.
+    #[must_use]
+    pub const fn of<P: Protocol>() -> Self {
+        Self {
+            id_max: P::Header::ID_MAX,
+            in_flight: P::DEFAULTS.limits.in_flight,
+            report: P::REPORT,
+            stream: P::STREAM,
+        }
+    }
+}
 
 /// The meaning of a received frame.
 #[derive(Debug, PartialEq, Eq)]
@@ -42,38 +67,34 @@ pub enum Incoming<T> {
 /// `T` is the caller's token for a request in flight. Every token passed to [`open`](Self::open) is returned exactly
 /// once: with the response, as expired, as cancelled, or by [`end_if`](Self::end_if).
 #[derive(Debug)]
-pub struct Session<P, T> {
+pub struct Session<T> {
+    rules: SessionRules,
     outgoing: Outgoing<T>,
     seen: Seen,
-    protocol: PhantomData<P>,
 }
 
-impl<P: Protocol, T> Session<P, T> {
+impl<T> Session<T> {
     /// Creates a session. Its ids count up from `first_id`, and continue from 0 after the largest id of the header.
     ///
     /// At most `limits.in_flight` requests are in flight, and at most half of all ids, so that a recent id is not
     /// reused at once. Delivered reports are remembered for twice the time in which `ack` allows repetitions, counted
     /// from their last arrival. The session remembers as many reports as a peer may have in flight or queued.
     #[must_use]
-    pub fn new(limits: &Limits, ack: AckPolicy, first_id: u32) -> Self {
+    pub fn new(rules: SessionRules, limits: &Limits, ack: AckPolicy, first_id: u32) -> Self {
         let repeated_for = ack.timeout.saturating_mul(ack.retries.saturating_add(1));
-        let half_of_ids = usize::try_from(P::Header::ID_MAX / 2 + 1).unwrap_or(usize::MAX);
+        let half_of_ids = usize::try_from(rules.id_max / 2 + 1).unwrap_or(usize::MAX);
         Self {
-            outgoing: Outgoing::new(
-                limits.in_flight.min(half_of_ids),
-                first_id,
-                P::Header::ID_MAX,
-            ),
+            rules,
+            outgoing: Outgoing::new(limits.in_flight.min(half_of_ids), first_id, rules.id_max),
             // A peer may repeat all its reports in flight, up to its own limit.
             seen: Seen::new(
                 limits
                     .queued_reports
                     .max(limits.in_flight)
-                    .max(P::DEFAULTS.limits.in_flight)
+                    .max(rules.in_flight)
                     .min(half_of_ids),
                 repeated_for.saturating_mul(2),
             ),
-            protocol: PhantomData,
         }
     }
 
@@ -112,13 +133,13 @@ impl<P: Protocol, T> Session<P, T> {
                 None => Incoming::Late,
             };
         }
-        if frame.kind == P::REPORT {
+        if frame.kind == self.rules.report {
             if self.seen.contains(frame, digest, now) {
                 Incoming::Repeated
             } else {
                 Incoming::Report
             }
-        } else if frame.kind == P::STREAM {
+        } else if frame.kind == self.rules.stream {
             Incoming::Stream
         } else {
             Incoming::Command

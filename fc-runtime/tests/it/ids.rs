@@ -1,7 +1,7 @@
 //! Message ids of a header that has sixteen bits for them.
 
 use crate::common::short::Short;
-use fc_runtime::{AckPolicy, Busy, Incoming, Limits, Protocol, Session};
+use fc_runtime::{AckPolicy, Busy, Incoming, Limits, Protocol, Session, SessionRules};
 use std::collections::HashSet;
 use std::time::{Duration, Instant};
 
@@ -11,12 +11,12 @@ const POLICY: AckPolicy = AckPolicy {
 };
 const HALF: usize = 1 << 15;
 
-fn session(in_flight: usize, first_id: u32) -> Session<Short, u32> {
+fn session(in_flight: usize, first_id: u32) -> Session<u32> {
     let limits = Limits {
         in_flight,
         ..Short::DEFAULTS.limits
     };
-    Session::new(&limits, POLICY, first_id)
+    Session::new(SessionRules::of::<Short>(), &limits, POLICY, first_id)
 }
 
 #[fc_test::test]

@@ -1,18 +1,25 @@
 //! Random events for requests in flight. `conformance/sessions` defines the required behaviour in each situation.
 
 use crate::common::{LIMITS, Toy, answer_to};
-use fc_runtime::{AckPolicy, Busy, Due, FrameId, Incoming, Limits, Protocol, Session};
+use fc_runtime::{
+    AckPolicy, Busy, Due, FrameId, Incoming, Limits, Protocol, Session, SessionRules,
+};
 use proptest::collection::vec;
 use proptest::prelude::{Strategy, any, prop_oneof, proptest};
 use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
-fn session(in_flight: usize, first_id: u32) -> Session<Toy, u32> {
+fn session(in_flight: usize, first_id: u32) -> Session<u32> {
     let limits = Limits {
         in_flight,
         ..LIMITS
     };
-    Session::new(&limits, Toy::DEFAULTS.ack, first_id)
+    Session::new(
+        SessionRules::of::<Toy>(),
+        &limits,
+        Toy::DEFAULTS.ack,
+        first_id,
+    )
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,7 @@ use super::script::{
 use crate::common::short::Short;
 use crate::common::{LIMITS, Toy};
 use fc_runtime::digest::{DigestAlgorithm as _, Md5};
-use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session};
+use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session, SessionRules};
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
@@ -25,8 +25,8 @@ struct Arrived {
     digest: Option<[u8; 16]>,
 }
 
-struct Run<P: Protocol> {
-    session: Session<P, usize>,
+struct Run {
+    session: Session<usize>,
     start: Instant,
     now: Instant,
     ack: AckPolicy,
@@ -41,26 +41,28 @@ struct Run<P: Protocol> {
 
 /// Runs a script. Returns the first step with another result than expected.
 pub fn run(script: &Script) -> Result<(), Failure> {
-    match script.given.id_bits {
-        IdBits::Sixteen => Run::<Short>::new(&script.given)?.steps(&script.steps),
-        IdBits::ThirtyTwo => Run::<Toy>::new(&script.given)?.steps(&script.steps),
-    }
+    let rules = match script.given.id_bits {
+        IdBits::Sixteen => SessionRules::of::<Short>(),
+        IdBits::ThirtyTwo => SessionRules::of::<Toy>(),
+    };
+    Run::new(rules, &script.given)?.steps(&script.steps)
 }
 
 fn milliseconds(count: u64) -> Duration {
     Duration::from_millis(count)
 }
 
-fn code_of<P: Protocol>(kind: Kind) -> u8 {
+/// Returns the kind of a frame, which both protocols share.
+fn code_of(kind: Kind) -> u8 {
     match kind {
-        Kind::Command => P::COMMAND,
-        Kind::Report => P::REPORT,
-        Kind::Stream => P::STREAM,
+        Kind::Command => Toy::COMMAND,
+        Kind::Report => Toy::REPORT,
+        Kind::Stream => Toy::STREAM,
     }
 }
 
-impl<P: Protocol> Run<P> {
-    fn new(given: &Given) -> Result<Self, Failure> {
+impl Run {
+    fn new(rules: SessionRules, given: &Given) -> Result<Self, Failure> {
         let limits = Limits {
             in_flight: given.in_flight.unwrap_or(defaults::IN_FLIGHT),
             queued_reports: given.queued_reports.unwrap_or(defaults::QUEUED_REPORTS),
@@ -69,7 +71,7 @@ impl<P: Protocol> Run<P> {
         let remembers = limits
             .in_flight
             .max(limits.queued_reports)
-            .max(P::DEFAULTS.limits.in_flight);
+            .max(rules.in_flight);
         if given.remembers.is_some_and(|said| said != remembers) {
             return Err(format!("such a peer remembers {remembers} reports"));
         }
@@ -80,7 +82,7 @@ impl<P: Protocol> Run<P> {
         };
         let now = Instant::now();
         Ok(Self {
-            session: Session::new(&limits, ack, given.first_id),
+            session: Session::new(rules, &limits, ack, given.first_id),
             start: now,
             now,
             ack,
@@ -121,9 +123,9 @@ impl<P: Protocol> Run<P> {
                     timeout: self.call_timeout,
                     retries: 0,
                 };
-                self.open(open, P::COMMAND, policy)?;
+                self.open(open, Toy::COMMAND, policy)?;
             }
-            Action::Report(open) => self.open(open, P::REPORT, self.ack)?,
+            Action::Report(open) => self.open(open, Toy::REPORT, self.ack)?,
             Action::Receive(frame) => self.receive(frame, round)?,
             Action::Advance(time) => {
                 self.now += milliseconds(time);
@@ -209,7 +211,7 @@ impl<P: Protocol> Run<P> {
         let id = arriving.id.map(|id| id.wrapping_add(round));
         let frame = FrameId {
             response: answered.is_some(),
-            kind: (arriving.kind.map(code_of::<P>))
+            kind: (arriving.kind.map(code_of))
                 .or(answered.map(|frame| frame.kind))
                 .ok_or(missing)?,
             code: (arriving.code.or(answered.map(|frame| frame.code))).ok_or(missing)?,
