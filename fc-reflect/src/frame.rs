@@ -137,13 +137,30 @@ pub(crate) fn read<'m>(
     })
 }
 
-/// Returns the length of the frame at the start of `bytes`, and its direction. An error is reported as soon as the
-/// bytes show it. A receiver that reads byte by byte reports the same error.
+/// Returns the length of the whole frame at the start of `bytes`, and its direction.
 fn locate(
     plan: &FramePlan<'_>,
     limits: &Limits,
     bytes: &[u8],
 ) -> Result<(usize, Direction), FrameError> {
+    match announced(plan, limits, bytes)? {
+        Some((length, direction)) if length <= bytes.len() => Ok((length, direction)),
+        _ => {
+            let count = bytes.len();
+            let detail = format!("the input ends inside the frame, after {count} bytes");
+            Err(FrameError::new(FrameFault::Truncated, None, detail))
+        }
+    }
+}
+
+/// Returns the length of the frame that begins at the start of `bytes`, and its direction. Returns `None` while the
+/// field with the length is incomplete. An error is reported as soon as the bytes show it. A receiver that reads byte
+/// by byte reports the same error.
+pub(crate) fn announced(
+    plan: &FramePlan<'_>,
+    limits: &Limits,
+    bytes: &[u8],
+) -> Result<Option<(usize, Direction)>, FrameError> {
     let opens = |head: &[u8]| bytes.iter().zip(head).all(|(one, two)| one == two);
     let direction = if opens(&plan.layout.response_head) {
         Direction::Response
@@ -156,15 +173,10 @@ fn locate(
             "no frame begins here",
         ));
     };
-    let truncated = || {
-        let detail = format!(
-            "the input ends inside the frame, after {} bytes",
-            bytes.len()
-        );
-        FrameError::new(FrameFault::Truncated, None, detail)
-    };
     let raw = Raw { plan, bytes };
-    let total = raw.int(HeaderRole::TotalLength).ok_or_else(truncated)?;
+    let Some(total) = raw.int(HeaderRole::TotalLength) else {
+        return Ok(None);
+    };
     if total > limits.frame_bytes.into() {
         let detail = format!(
             "the frame has {total} bytes, more than the limit of {}",
@@ -180,10 +192,7 @@ fn locate(
         );
         return Err(FrameError::new(FrameFault::ShortFrame, None, detail));
     }
-    if bytes.len() < length {
-        return Err(truncated());
-    }
-    Ok((length, direction))
+    Ok(Some((length, direction)))
 }
 
 /// The bytes of a header.

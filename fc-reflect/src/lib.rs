@@ -130,6 +130,16 @@ impl<'m> Reflector<'m> {
         frame::read(&self.plan, &self.limits, bytes)
     }
 
+    /// Returns the length of the frame that begins at the start of `bytes`, or `None` while too few bytes show it. The
+    /// frame itself may be incomplete.
+    ///
+    /// # Errors
+    /// `bad_head`, `frame_too_long` or `short_frame`, as soon as the bytes show it.
+    pub fn length(&self, bytes: &[u8]) -> Result<Option<usize>, FrameError> {
+        let announced = frame::announced(&self.plan.frame, &self.limits, bytes)?;
+        Ok(announced.map(|(length, _)| length))
+    }
+
     /// Reads the text of a message of one side of an operation. Empty text counts as `{}`. Without an operation, all
     /// keys outside the envelope are unknown. A stream has no envelope.
     ///
