@@ -7,8 +7,8 @@ use crate::help::{Help, PageOptions, Part, global};
 use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
-    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp, new,
-    package, places, questions, release, retire, schema, settle, shell,
+    call, changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp,
+    mock, new, package, places, questions, release, retire, schema, settle, shell,
 };
 
 /// Styles of help and usage errors.
@@ -75,6 +75,8 @@ pub enum Command {
     Codes(codes::Options),
     Questions(questions::Options),
     Settle(Box<settle::Options>),
+    Call(call::Options),
+    Mock(mock::Options),
     Git(git::Options),
     #[command(hide = true)]
     GitDiff(git::diff::Options),

@@ -3,6 +3,7 @@
 //! Each subcommand has one file with its options and messages. `fc_codegen` and the other crates do the work.
 
 mod args;
+mod call;
 mod changelog;
 mod check;
 mod codes;
@@ -18,6 +19,7 @@ mod inspect;
 mod lang;
 mod lint;
 mod lsp;
+mod mock;
 mod new;
 mod outcome;
 mod package;
@@ -83,6 +85,8 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Release(options) => release::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
         Command::Retire(options) => retire::run(&args.place, options),
+        Command::Call(options) => call::run(&args.place, options),
+        Command::Mock(options) => mock::run(&args.place, options),
         Command::Lsp(options) => lsp::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),

@@ -9,6 +9,10 @@ pub enum Status {
     Faulty = 1,
     /// Wrong usage, or a file that cannot be read or written.
     Failed = 2,
+    /// A robot has refused a request.
+    Refused = 3,
+    /// A robot has not answered.
+    Unanswered = 4,
 }
 
 /// The reason why a command failed: a sentence for the user.

@@ -7,6 +7,9 @@ use fc_spec::load::SettleError;
 use fc_spec::model::{DumpError, ProjectionError};
 use fc_spec::retire::RetireError;
 use fc_spec::scaffold::ScaffoldError;
+use fc_workshop::arguments::ArgumentError;
+use fc_workshop::client::ClientError;
+use fc_workshop::mock::MockError;
 
 use crate::lang::{in_lang, said};
 use std::error::Error;
@@ -81,7 +84,10 @@ fn words(failure: &(dyn Error + 'static)) -> String {
         ScaffoldError,
         SettleError,
         TargetError,
-        VersionError
+        VersionError,
+        ArgumentError,
+        ClientError,
+        MockError
     );
     failure.to_string()
 }

@@ -3,9 +3,12 @@
 //! **Architecture invariant.** This crate contains no fact about a protocol and does not depend on generated code. All
 //! facts come from the model, so a tool uses an edited spec at once.
 
+pub mod answer;
 pub mod arguments;
 pub mod client;
 pub mod connection;
 pub mod facts;
+pub mod mock;
+pub mod run;
 pub mod stream;
 pub mod table;

@@ -13,8 +13,8 @@ use clap::{Arg, ArgAction, Command, CommandFactory as _};
 use crate::args::{self, Args};
 use crate::lang::both;
 use crate::{
-    changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp, new,
-    package, places, questions, release, retire, schema, settle, shell,
+    call, changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp,
+    mock, new, package, places, questions, release, retire, schema, settle, shell,
 };
 
 pub use page::{Options as PageOptions, run as page};
@@ -66,6 +66,8 @@ fn of(path: &[&str]) -> Option<Help> {
         ["codes"] => codes::help(),
         ["questions"] => questions::help(),
         ["settle"] => settle::help(),
+        ["call"] => call::help(),
+        ["mock"] => mock::help(),
         ["git"] => git::help(),
         ["git", "setup"] => git::setup::help(),
         ["git", "check"] => git::check::help(),

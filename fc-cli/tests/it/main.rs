@@ -11,6 +11,8 @@
 )]
 
 mod audience;
+#[cfg(unix)]
+mod call;
 mod check;
 mod codes;
 mod diff;
@@ -30,6 +32,8 @@ mod languages;
 mod lint;
 mod lsp;
 mod merge;
+#[cfg(unix)]
+mod mock;
 mod new;
 #[cfg(unix)]
 mod package;

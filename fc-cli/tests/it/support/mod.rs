@@ -1,6 +1,8 @@
 //! A project of its own for each test, and the command run in it.
 
 pub mod git;
+#[cfg(unix)]
+pub mod mock;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,350 @@
+//! `fcproto call`.
+
+mod session;
+mod show;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::ValueEnum;
+use fc_reflect::{Direction, Reflector};
+use fc_spec::model::{Effect, Kind, Model, Operation, Value};
+use fc_workshop::arguments::{Arguments, json};
+use fc_workshop::facts;
+
+use crate::help::{Help, Part};
+use crate::input;
+use crate::lang::{both, lang, said};
+use crate::new::code;
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::spec::Spec;
+
+/// Longest silence of a process that `--follow` waits for, in seconds.
+const FOLLOW: &str = "300";
+
+/// Options of `fcproto call`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    #[arg(
+        value_name = "NAME",
+        required_unless_present_any = ["list", "raw"],
+        help = both("指令或流的名称", "Name of a command or stream")
+    )]
+    name: Option<String>,
+    #[arg(
+        value_name = "KEY=VALUE",
+        help = both("请求的值，例如 `data.x=1.5`", "Values of the request, such as `data.x=1.5`")
+    )]
+    arguments: Vec<String>,
+    #[arg(
+        long,
+        value_name = "HOST[:PORT]",
+        default_value = "127.0.0.1",
+        help = both("机器人的地址；端口默认按规范", "Address of the robot; the port is that of the spec by default")
+    )]
+    to: String,
+    #[arg(
+        long,
+        value_name = "JSON",
+        conflicts_with = "arguments",
+        help = both("请求的 JSON；`@FILE` 读文件，`@-` 读标准输入", "Request as JSON; `@FILE` reads a file, `@-` standard input")
+    )]
+    json: Option<String>,
+    #[arg(
+        long,
+        value_names = ["CODE", "HEX"],
+        num_args = 2,
+        conflicts_with_all = ["name", "json", "list", "follow"],
+        help = both("向功能码发送这些字节，不作检查", "Send these bytes to a code, unchecked")
+    )]
+    raw: Option<Vec<String>>,
+    #[arg(
+        long,
+        value_name = "EFFECT",
+        help = both("允许改变机器人的指令", "Allow commands that change the robot")
+    )]
+    allow: Option<Allowed>,
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "1",
+        value_parser = clap::value_parser!(u32).range(1..),
+        help = both("发送的次数，或流的帧数", "Number of calls, or of frames of a stream")
+    )]
+    repeat: u32,
+    #[arg(
+        long,
+        value_name = "MS",
+        value_parser = clap::value_parser!(u64).range(1..=86_400_000),
+        help = both("等待响应的毫秒数 [默认：按规范]", "Milliseconds to wait for the response [default: by the spec]")
+    )]
+    timeout: Option<u64>,
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = FOLLOW,
+        value_parser = clap::value_parser!(u64).range(1..=86_400),
+        help = both("跟随指令引起的过程直到结束；最长静默秒数默认为 300", "Follow the process until it ends; longest silence, 300 by default")
+    )]
+    follow: Option<u64>,
+    #[arg(
+        long,
+        conflicts_with_all = ["name", "json", "follow"],
+        help = both("列出全部指令和流", "List all commands and streams")
+    )]
+    list: bool,
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        help = both("输出格式", "Output format")
+    )]
+    format: Shown,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Shown {
+    #[value(help = both("对齐的表格", "An aligned table"))]
+    Text,
+    #[value(help = both("每条消息一行 JSON", "One line of JSON per message"))]
+    Json,
+}
+
+/// The largest effect that a call may have. The order is that of the danger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
+enum Allowed {
+    #[value(help = both("改变机器人保存的内容", "Change what the robot stores"))]
+    Config,
+    #[value(help = both("也让机器人运动，以及影响未知的指令", "Also move the robot, and commands of unknown effect"))]
+    Motion,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both("向机器人发送一条指令", "Send a command to a robot"),
+        details: vec![
+            Part::Text(both(
+                "请求按规范检查后才发送。值写成 `键=值`：键是线上键名或代码中的名称，用点号进入对象，用序号进入列表；枚举值写名称，\
+                 列表用逗号分隔。没有给出的键不发送。",
+                "The request is checked by the spec before it is sent. A value is `key=value`. The key is a wire key or a name in code; \
+                 dots lead into objects, and indexes into lists. Enum values have names, and lists have commas. Keys that you leave out \
+                 are not sent.",
+            )),
+            Part::Text(both(
+                "只有影响为 `read` 的指令不需要 `--allow`。",
+                "Only commands with the effect `read` need no `--allow`.",
+            )),
+            Part::Terms(
+                both("其他退出码", "Other exit statuses"),
+                vec![
+                    (
+                        "3",
+                        both(
+                            "机器人拒绝，或过程失败",
+                            "Refused by the robot, or the process failed",
+                        ),
+                    ),
+                    (
+                        "4",
+                        both(
+                            "没有响应，或响应不合规范",
+                            "No response, or one that breaks the spec",
+                        ),
+                    ),
+                ],
+            ),
+            Part::Examples(vec![
+                (
+                    "fcproto call get_robot_sn --to 192.168.1.3",
+                    both("查询一台机器人", "Ask a robot"),
+                ),
+                ("fcproto call --list", both("可用的指令", "The commands")),
+                (
+                    "fcproto call go_recharge --allow motion --follow",
+                    both("直到充电过程结束", "Until charging has ended"),
+                ),
+                ("fcproto call get_robot_sn --format json | jq .body", ""),
+                ("fcproto call --raw 0x0110 7b7d --allow motion", ""),
+            ]),
+        ],
+        fails: both("规范有错误", "Errors in the spec"),
+        speaks: both("`text` 格式", "`text`"),
+    }
+}
+
+/// A request that is ready to be sent.
+struct Request<'m> {
+    operation: Option<&'m Operation>,
+    kind: u8,
+    code: u16,
+    data: Vec<u8>,
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    let Some(model) = &spec.model else {
+        spec.show_faults()?;
+        return Ok(spec.status());
+    };
+    if options.list {
+        print::result(&show::list(model, options.format == Shown::Json))?;
+        return Ok(Status::Fine);
+    }
+    let reflector = Reflector::new(model);
+    let request = match &options.raw {
+        Some(raw) => raw_request(model, raw)?,
+        None => named_request(&reflector, options)?,
+    };
+    allow(request.operation, options.allow)?;
+    let call = session::Call {
+        reflector: &reflector,
+        to: &options.to,
+        repeat: options.repeat,
+        timeout: options
+            .timeout
+            .map_or_else(|| facts::call_timeout(model), Duration::from_millis),
+        follow: options.follow.map(Duration::from_secs),
+        shown: show::Format {
+            json: options.format == Shown::Json,
+            lang: lang(),
+        },
+    };
+    fc_workshop::run::block_on(call.run(&request))?
+}
+
+/// Composes the request of an operation and checks it.
+fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Request<'m>, Failure> {
+    let model = reflector.model();
+    let name = options.name.as_deref().unwrap_or_default();
+    let is_callable = |operation: &&Operation| operation.kind() != Kind::Report;
+    let operation = model.operation(name).filter(is_callable).ok_or_else(|| {
+        said!(
+            "没有指令 `{name}`；`fcproto call --list` 列出全部指令",
+            "there is no command `{name}`; `fcproto call --list` shows all"
+        )
+    })?;
+    if options.follow.is_some() && operation.sets_off().is_empty() {
+        return Err(said!(
+            "`{name}` 不引起上报，不能用 --follow",
+            "`{name}` sets off no reports; leave out --follow"
+        )
+        .into());
+    }
+    let Some(id) = reflector.id(operation, Direction::Request, 0) else {
+        return Err(said!(
+            "`{name}` 还没有功能码，不能发送",
+            "`{name}` has no code yet, so it cannot be sent"
+        )
+        .into());
+    };
+    let body = match (&options.json, operation.body(Direction::Request)) {
+        (Some(text), _) => read_json(text)?,
+        (None, Some(body)) => {
+            let arguments = options.arguments.iter().map(String::as_str);
+            Arguments::new(model).object(&body.ty, arguments)?
+        }
+        (None, None) => Value::Object(Vec::new()),
+    };
+    let data = match operation.kind() {
+        Kind::Stream => body.to_string(),
+        _ => {
+            let profile = fc_reflect::sample::Profile::Example;
+            let mut message = (reflector.samples()).enveloped(Direction::Request, body, profile);
+            facts::stamp(model, Direction::Request, &mut message);
+            message.to_string()
+        }
+    };
+    let checked = reflector.message(Some(operation), Direction::Request, data.as_bytes());
+    let text = checked.and_then(|message| message.canonical());
+    let text = text.map_err(|error| show::breaks_the_spec(model, operation, &error))?;
+    Ok(Request {
+        operation: Some(operation),
+        kind: id.kind,
+        code: id.code,
+        data: text.into_bytes(),
+    })
+}
+
+fn read_json(text: &str) -> Result<Value, Failure> {
+    let text = match text.strip_prefix('@') {
+        Some(file) => input::text(&PathBuf::from(file))?,
+        None => text.to_owned(),
+    };
+    let value = json(&text).filter(|value| matches!(value, Value::Object(_)));
+    value.ok_or_else(|| {
+        said!(
+            "`--json` 应为一个 JSON 对象",
+            "`--json` needs a JSON object"
+        )
+        .into()
+    })
+}
+
+fn raw_request<'m>(model: &'m Model, raw: &[String]) -> Result<Request<'m>, Failure> {
+    let [number, hex] = raw else {
+        return Err(said!("`--raw` 应有功能码和字节", "`--raw` needs a code and bytes").into());
+    };
+    let number = code(number)?;
+    let data = bytes(hex).ok_or_else(|| {
+        said!(
+            "`{hex}` 不是十六进制字节，例如 `7b7d`",
+            "`{hex}` is not bytes in hexadecimal, such as `7b7d`"
+        )
+    })?;
+    let is_it = |operation: &&Operation| {
+        operation.kind() == Kind::Command && operation.code.value == Some(number)
+    };
+    Ok(Request {
+        operation: model.operations.iter().find(is_it),
+        kind: model.frame.kinds.command.value,
+        code: number,
+        data,
+    })
+}
+
+fn bytes(hex: &str) -> Option<Vec<u8>> {
+    let digits: Vec<u8> = hex
+        .chars()
+        .filter(|it| !it.is_whitespace())
+        .map(|it| it.to_digit(16).and_then(|digit| u8::try_from(digit).ok()))
+        .collect::<Option<_>>()?;
+    let pairs = digits.chunks_exact(2);
+    if !pairs.remainder().is_empty() {
+        return None;
+    }
+    let byte = |pair: &[u8]| pair.iter().fold(0, |byte, digit| byte << 4 | digit);
+    Some(pairs.map(byte).collect())
+}
+
+/// Refuses an operation with a larger effect than allowed. An unknown effect counts as a motion.
+fn allow(operation: Option<&Operation>, allowed: Option<Allowed>) -> Result<(), Failure> {
+    let effect = match operation {
+        Some(operation) if operation.kind() == Kind::Stream => Some(Effect::Read),
+        Some(operation) => operation.effect(),
+        None => None,
+    };
+    let effect = effect.unwrap_or(Effect::Unknown);
+    let needed = match effect {
+        Effect::Read => return Ok(()),
+        Effect::Config => Allowed::Config,
+        Effect::Motion | Effect::Unknown => Allowed::Motion,
+    };
+    if allowed.is_some_and(|allowed| allowed >= needed) {
+        return Ok(());
+    }
+    let name = operation.map_or("--raw", |operation| &operation.name);
+    let effect = effect.name();
+    let option = match needed {
+        Allowed::Config => "--allow config",
+        Allowed::Motion => "--allow motion",
+    };
+    Err(said!(
+        "`{name}` 的影响是 `{effect}`，没有发送；确定要发送就加 `{option}`",
+        "`{name}` has the effect `{effect}` and was not sent; add `{option}` to send it"
+    )
+    .into())
+}

@@ -1,0 +1,181 @@
+//! The conversation of a call.
+
+use std::time::{Duration, Instant};
+
+use fc_reflect::{Direction, Frame, Packing, Reflector};
+use fc_spec::model::{Kind, Operation, Side, Value};
+use fc_workshop::answer::{Outcome, Process, Progress};
+use fc_workshop::arguments::json;
+use fc_workshop::client::{Client, ClientError};
+
+use super::{Request, show};
+use crate::lang::said;
+use crate::outcome::{Failure, Status};
+use crate::print;
+
+/// The settings of a call.
+pub struct Call<'r, 'm> {
+    pub reflector: &'r Reflector<'m>,
+    pub to: &'r str,
+    pub repeat: u32,
+    pub timeout: Duration,
+    /// Longest silence of a process to follow.
+    pub follow: Option<Duration>,
+    pub shown: show::Format,
+}
+
+impl<'m> Call<'_, 'm> {
+    /// Sends the request as often as asked. Returns the status of the last call that was no success.
+    pub async fn run(&self, request: &Request<'m>) -> Result<Status, Failure> {
+        match self.each(request).await {
+            Ok(status) => Ok(status),
+            Err(failure) if failure.is::<ClientError>() => {
+                print::failure(failure.as_ref());
+                Ok(Status::Unanswered)
+            }
+            Err(failure) => Err(failure),
+        }
+    }
+
+    async fn each(&self, request: &Request<'m>) -> Result<Status, Failure> {
+        let port = request.operation.map(|operation| operation.port);
+        let ports = &self.reflector.model().transport.ports;
+        let port = port.map_or(&ports.command, |role| ports.get(role));
+        let address = address(self.to, port.number);
+        let mut client = Client::connect(self.reflector, &address, self.timeout).await?;
+        if let Some(operation) = request.operation
+            && operation.kind() == Kind::Stream
+        {
+            return self.stream(&mut client, request, operation).await;
+        }
+        let mut status = Status::Fine;
+        for _ in 0..self.repeat {
+            let one = self.once(&mut client, request).await?;
+            if one != Status::Fine {
+                status = one;
+            }
+        }
+        Ok(status)
+    }
+
+    async fn once(
+        &self,
+        client: &mut Client<'m>,
+        request: &Request<'m>,
+    ) -> Result<Status, Failure> {
+        let begun = Instant::now();
+        let data = request.data.as_slice().into();
+        let called = client.call(request.kind, request.code, data, self.timeout);
+        let frame = called.await?;
+        let took = begun.elapsed();
+        let message = (self.reflector).message(request.operation, Direction::Response, &frame.data);
+        let message = match message {
+            Ok(message) => message,
+            Err(error) => return invalid(&error),
+        };
+        let outcome = Outcome::of(self.reflector.model(), &message);
+        let name = request.operation.map(|operation| operation.name.as_str());
+        print::result(&self.shown.response(name, &frame, &outcome, &message, took))?;
+        if !outcome.is_success() {
+            return Ok(Status::Refused);
+        }
+        if let Err(error) = &message.body {
+            return invalid(error);
+        }
+        match (self.follow, request.operation) {
+            (Some(silence), Some(operation)) => {
+                let process = Process::new(
+                    self.reflector.model(),
+                    operation,
+                    value(&request.data),
+                    value(&frame.data),
+                );
+                self.follow(client, &process, silence).await
+            }
+            _ => Ok(Status::Fine),
+        }
+    }
+
+    /// Shows the reports of a process until it has ended.
+    async fn follow(
+        &self,
+        client: &mut Client<'m>,
+        process: &Process<'m>,
+        silence: Duration,
+    ) -> Result<Status, Failure> {
+        loop {
+            let frame = client.report(silence).await?;
+            let Some(operation) = frame.operation else {
+                continue;
+            };
+            let Some(progress) = process.progress(operation, &value(&frame.data)) else {
+                continue;
+            };
+            self.show_pushed(operation, &frame)?;
+            match progress {
+                Progress::Running => {}
+                Progress::Ended => return Ok(Status::Fine),
+                Progress::Failed => return Ok(Status::Refused),
+            }
+        }
+    }
+
+    /// Sends the frames of a stream, or shows those that the robot sends.
+    async fn stream(
+        &self,
+        client: &mut Client<'m>,
+        request: &Request<'m>,
+        operation: &Operation,
+    ) -> Result<Status, Failure> {
+        if operation.sender == Side::App {
+            for number in 0..self.repeat {
+                if let Some(id) = self.reflector.id(operation, Direction::Request, number) {
+                    let frame = self.reflector.seal(id, &request.data, Packing::Plain)?;
+                    client.send(&frame).await?;
+                }
+            }
+            return Ok(Status::Fine);
+        }
+        for _ in 0..self.repeat {
+            let frame = loop {
+                let frame = client.stream_frame(self.timeout).await?;
+                if frame.id.code == request.code {
+                    break frame;
+                }
+            };
+            self.show_pushed(operation, &frame)?;
+        }
+        Ok(Status::Fine)
+    }
+
+    fn show_pushed(&self, operation: &Operation, frame: &Frame<'_>) -> Result<(), Failure> {
+        let message = (self.reflector).message(Some(operation), frame.id.direction, &frame.data);
+        print::result(&self.shown.pushed(operation, frame, message.as_ref().ok()))?;
+        Ok(())
+    }
+}
+
+/// Reads a message that is only compared. Other data is null.
+fn value(data: &[u8]) -> Value {
+    let text = std::str::from_utf8(data).ok();
+    text.and_then(json).unwrap_or(Value::Null)
+}
+
+fn invalid(error: &fc_reflect::BodyError) -> Result<Status, Failure> {
+    let text = said!(
+        "响应不合规范：{error}",
+        "the response breaks the spec: {error}"
+    );
+    print::failure(Failure::from(text).as_ref());
+    Ok(Status::Unanswered)
+}
+
+/// Adds the port to an address that has none. An IPv6 address with a port has brackets.
+fn address(to: &str, port: u16) -> String {
+    let is_bare_v6 = to.parse::<std::net::Ipv6Addr>().is_ok();
+    match to.rsplit_once(':') {
+        _ if is_bare_v6 => format!("[{to}]:{port}"),
+        Some((_, number)) if number.parse::<u16>().is_ok() => to.to_owned(),
+        _ => format!("{to}:{port}"),
+    }
+}

@@ -1,0 +1,192 @@
+//! The output of a call.
+
+use std::time::Duration;
+
+use fc_reflect::{BodyError, Direction, Frame, Message};
+use fc_spec::model::{Field, Kind, Lang, Model, Number, Operation, Type, TypeShape, Value};
+use fc_workshop::answer::Outcome;
+use fc_workshop::arguments::json;
+use fc_workshop::table::{aligned, table};
+
+use crate::lang::{lang, said};
+use crate::outcome::Failure;
+
+/// The format of the output.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// One line of JSON per message instead of a table.
+    pub json: bool,
+    /// The language of tables.
+    pub lang: Lang,
+}
+
+impl Format {
+    /// Shows a response.
+    pub fn response(
+        self,
+        name: Option<&str>,
+        frame: &Frame<'_>,
+        outcome: &Outcome<'_>,
+        message: &Message<'_>,
+        took: Duration,
+    ) -> String {
+        let name = name.map_or_else(|| format!("0x{:04X}", frame.id.code), str::to_owned);
+        let result = outcome.known.map_or("", |known| &known.name);
+        if self.json {
+            let took = Number::Float(milliseconds(took));
+            let code = outcome.code.map_or(Value::Null, |code| int(code.into()));
+            return line(vec![
+                ("name", Value::String(name)),
+                ("kind", Value::String("response".to_owned())),
+                ("result", code),
+                ("result_name", Value::String(result.to_owned())),
+                ("result_text", Value::String(outcome.text.clone())),
+                ("milliseconds", Value::Number(took)),
+                ("body", body(frame)),
+            ]);
+        }
+        let code = outcome.code.map(|code| format!("  {code} {result}"));
+        // The robot sends the Chinese text of the result, sometimes with a reason behind it.
+        let known = outcome.known.and_then(|known| {
+            let reason = outcome.text.strip_prefix(&known.text.zh)?;
+            Some(format!("{}{reason}", self.lang.text(&known.text)))
+        });
+        let text = known.unwrap_or_else(|| outcome.text.clone());
+        let text = if text.is_empty() {
+            text
+        } else {
+            format!("  {text}")
+        };
+        let code = code.unwrap_or_default();
+        let took = format!("{:.1} ms", milliseconds(took));
+        let nodes = message.body.as_deref().unwrap_or_default();
+        format!("{name}{code}{text}  {took}\n{}", table(nodes, self.lang))
+    }
+
+    /// Shows a report or a frame of a stream.
+    pub fn pushed(
+        self,
+        operation: &Operation,
+        frame: &Frame<'_>,
+        message: Option<&Message<'_>>,
+    ) -> String {
+        let is_bytes = operation.body(Direction::Request).is_none();
+        let count = frame.data.len();
+        if self.json {
+            let mut keys = vec![
+                ("name", Value::String(operation.name.clone())),
+                ("kind", Value::String(operation.kind().name().to_owned())),
+            ];
+            keys.push(if is_bytes {
+                ("bytes", int(i128::try_from(count).unwrap_or(0)))
+            } else {
+                ("body", body(frame))
+            });
+            return line(keys);
+        }
+        let title = self.lang.text(&operation.title);
+        let name = &operation.name;
+        if is_bytes {
+            return said!(
+                "{name}  {title}  {count} 字节\n",
+                "{name}  {title}  {count} bytes\n"
+            );
+        }
+        let nodes = message.and_then(|message| message.body.as_deref().ok());
+        let rows = table(nodes.unwrap_or_default(), self.lang);
+        format!("{name}  {title}\n{rows}")
+    }
+}
+
+fn int(value: i128) -> Value {
+    Value::Number(Number::Int(value))
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    (time.as_secs_f64() * 10_000.0).round() / 10.0
+}
+
+fn line(keys: Vec<(&str, Value)>) -> String {
+    let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value));
+    format!("{}\n", Value::Object(keys.collect()))
+}
+
+/// Returns the data as JSON, or as a string if it is none.
+fn body(frame: &Frame<'_>) -> Value {
+    let text = String::from_utf8_lossy(&frame.data);
+    json(&text).unwrap_or_else(|| Value::String(text.into_owned()))
+}
+
+/// Returns the list of commands and streams.
+pub fn list(model: &Model, is_json: bool) -> String {
+    let operations = model.operations.iter();
+    let operations = operations.filter(|operation| operation.kind() != Kind::Report);
+    if is_json {
+        let lines = operations.map(|operation| {
+            let effect = operation.effect().map_or("", |effect| effect.name());
+            line(vec![
+                ("name", Value::String(operation.name.clone())),
+                ("kind", Value::String(operation.kind().name().to_owned())),
+                ("code", Value::String(operation.code.spelling.clone())),
+                ("effect", Value::String(effect.to_owned())),
+                ("zh", Value::String(operation.title.zh.clone())),
+                ("en", Value::String(operation.title.en.clone())),
+            ])
+        });
+        return lines.collect();
+    }
+    let rows: Vec<_> = operations
+        .map(|operation| {
+            let effect = operation
+                .effect()
+                .map_or_else(|| operation.kind().name(), |effect| effect.name());
+            [
+                operation.name.clone(),
+                operation.code.spelling.clone(),
+                effect.to_owned(),
+                lang().text(&operation.title).to_owned(),
+            ]
+        })
+        .collect();
+    aligned(&rows)
+}
+
+/// Returns the error of a request, with the accepted numbers of the field.
+pub fn breaks_the_spec(model: &Model, operation: &Operation, error: &BodyError) -> Failure {
+    let accepted = field(model, operation, error.path()).and_then(|field| {
+        let numbers = field.details().constraints.numbers()?;
+        let unit = field.details().unit.as_deref().unwrap_or_default();
+        Some(
+            format!("{} {unit}", lang().text(&numbers))
+                .trim_end()
+                .to_owned(),
+        )
+    });
+    let accepted = accepted.map(|accepted| said!("；允许 {accepted}", "; accepted: {accepted}"));
+    let accepted = accepted.unwrap_or_default();
+    said!(
+        "请求不合规范，没有发送：{error}{accepted}",
+        "the request breaks the spec and was not sent: {error}{accepted}"
+    )
+    .into()
+}
+
+/// Returns the field at a path such as `data.stations[3].x`.
+fn field<'m>(model: &'m Model, operation: &'m Operation, path: &str) -> Option<&'m Field> {
+    let body = operation.body(Direction::Request)?;
+    let mut shape = Some(model.types.structure(&body.ty));
+    let mut found = None;
+    for step in path.split('.') {
+        let key = step.split('[').next().unwrap_or_default();
+        let field = shape?.field(key)?;
+        shape = match field.ty.item() {
+            Type::Named(named) => match &model.types.get(named).shape {
+                TypeShape::Struct(shape) => Some(shape),
+                TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+            },
+            _ => None,
+        };
+        found = Some(field);
+    }
+    found
+}

@@ -1,0 +1,162 @@
+//! `fcproto call` against `fcproto mock`.
+
+use crate::support::Project;
+use crate::support::mock::Mock;
+use serde_json::{Value, json};
+
+/// Arguments, exit status, and texts in the output or in the errors.
+type Case = (&'static [&'static str], i32, &'static [&'static str]);
+
+const CASES: &[Case] = &[
+    (
+        &["get_level"],
+        0,
+        &[
+            "get_level  0 fine",
+            "level        40",
+            "7      ID of the scene",
+        ],
+    ),
+    (&["get_level", "--lang", "zh"], 0, &["40     亮度"]),
+    (
+        &["get_level", "level=1"],
+        2,
+        &["`level`", "send unknown keys with --json"],
+    ),
+    (&["get_level", "--json", "{\"more\":1}"], 0, &["fine"]),
+    (
+        &["get_level", "--json", "[]"],
+        2,
+        &["`--json` needs a JSON object"],
+    ),
+    (
+        &["get_level", "--follow"],
+        2,
+        &["`get_level` sets off no reports"],
+    ),
+    (&["lower"], 2, &["there is no command `lower`", "--list"]),
+    (&["alarm"], 2, &["there is no command `alarm`"]),
+    (&["dim", "--allow", "config"], 2, &["`dim` has no code yet"]),
+    (&["probe"], 2, &["effect `unknown`", "--allow motion"]),
+    (&["probe", "--allow", "config"], 2, &["--allow motion"]),
+    (&["probe", "--allow", "motion"], 0, &["probe  0 fine"]),
+    (&["set_level"], 2, &["missing_field"]),
+    (
+        &["set_level", "data.level=much"],
+        2,
+        &["an integer from -2147483648", "found `much`"],
+    ),
+    (
+        &["set_level", "data.depth=1"],
+        2,
+        &["there is no key `depth`", "the keys are level, ratio"],
+    ),
+    (
+        &["set_level", "data.phase=dusk"],
+        2,
+        &["one of", "found `dusk`"],
+    ),
+    (&["set_level", "level"], 2, &["expected `key=value`"]),
+    (&["--raw", "0x0102", "7b7d"], 0, &["get_level  0 fine"]),
+    (
+        &["--raw", "0x0102", "7b7"],
+        2,
+        &["not bytes in hexadecimal"],
+    ),
+    (
+        &["--raw", "0x0102", "2d", "--allow", "motion"],
+        3,
+        &["get_level  3 wrong  Wrong: bad_json"],
+    ),
+    (
+        &["--raw", "0x0777", "7b7d", "--allow", "motion"],
+        3,
+        &["0x0777"],
+    ),
+    (&["--list"], 0, &["get_level  0x0102", "unassigned", "glow"]),
+];
+
+#[test]
+fn each_call_has_its_status_and_its_output() {
+    let project = Project::new();
+    let mock = Mock::start(&project, &[]);
+    for (args, status, texts) in CASES {
+        let run = mock.call(&project, args);
+        let shown = format!("{}{}", run.stdout, run.stderr);
+        assert_eq!(run.status, *status, "{args:?}: {shown}");
+        for text in *texts {
+            assert!(shown.contains(text), "{args:?} lacks {text:?}: {shown}");
+        }
+    }
+}
+
+#[test]
+fn a_value_out_of_range_is_not_sent() {
+    let project = Project::new();
+    let body = json!({ "data": {
+        "level": 101, "ratio": "0.5", "armed": true, "label": "lamp", "serial": "AB", "colours": [],
+        "phase": 0,
+    }});
+    let args = [
+        "call",
+        "set_level",
+        "--json",
+        &body.to_string(),
+        "--allow",
+        "motion",
+    ];
+    // It is refused before a connection is made, so no robot is needed.
+    let run = project.fc(&args).expect(2);
+    for text in [
+        "data.level",
+        "expected at most 100, found 101",
+        "accepted: 0 … 100 %",
+    ] {
+        assert!(run.stderr.contains(text), "{text}: {run:?}");
+    }
+}
+
+#[test]
+fn json_output_has_a_line_per_message() {
+    let project = Project::new();
+    let mock = Mock::start(&project, &[]);
+    let run = mock.call(
+        &project,
+        &["get_level", "--format", "json", "--repeat", "3"],
+    );
+    let lines: Vec<Value> = run
+        .stdout
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!(lines.len(), 3);
+    for line in lines {
+        assert_eq!(line["name"], "get_level");
+        assert_eq!(line["result_name"], "fine");
+        assert_eq!(line["body"]["level"], 40);
+    }
+}
+
+#[test]
+fn a_robot_that_is_not_there_gives_status_4() {
+    let project = Project::new();
+    let mock = Mock::start(&project, &[]);
+    let address = mock.commands.clone();
+    assert_eq!(mock.stop("-TERM"), Some(0));
+    let run = project
+        .fc(&["call", "get_level", "--to", &address])
+        .expect(4);
+    assert!(run.stderr.contains("cannot connect"), "{run:?}");
+}
+
+#[test]
+fn a_robot_that_does_not_answer_gives_status_4() {
+    let project = Project::new();
+    // The listener accepts in the kernel, and no program reads.
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = silent.local_addr().unwrap().to_string();
+    let run = project
+        .fc(&["call", "get_level", "--to", &address, "--timeout", "50"])
+        .expect(4);
+    assert!(run.stderr.contains("no response within 50 ms"), "{run:?}");
+}

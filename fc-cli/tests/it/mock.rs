@@ -1,0 +1,23 @@
+//! `fcproto mock`.
+
+use crate::support::Project;
+use crate::support::mock::Mock;
+
+#[test]
+fn a_mock_ends_on_each_signal() {
+    let project = Project::new();
+    for signal in ["-INT", "-TERM"] {
+        assert_eq!(Mock::start(&project, &[]).stop(signal), Some(0), "{signal}");
+    }
+}
+
+#[test]
+fn a_taken_port_is_an_error_that_names_it() {
+    let project = Project::new();
+    let mock = Mock::start(&project, &[]);
+    let port = mock.commands.rsplit_once(':').unwrap().1;
+    let run = project
+        .fc(&["mock", "--command-port", port, "--data-port", "0"])
+        .expect(2);
+    assert!(run.stderr.contains(&mock.commands), "{run:?}");
+}

@@ -1,0 +1,136 @@
+//! The response to a call, and the process that the call has started.
+
+use fc_reflect::{About, Message, Node, Value};
+use fc_spec::model::{
+    self, Direction, EnvelopeRole, Exchange, Model, Operation, ResultCode, ResultRole, SetOff,
+};
+
+/// The result in the envelope of a response.
+#[derive(Clone, Debug)]
+pub struct Outcome<'m> {
+    /// The result code, or `None` if responses carry none.
+    pub code: Option<i64>,
+    /// The result code in the spec.
+    pub known: Option<&'m ResultCode>,
+    /// The text, or an empty string.
+    pub text: String,
+}
+
+impl<'m> Outcome<'m> {
+    /// Reads the result of a response.
+    #[must_use]
+    pub fn of(model: &'m Model, message: &Message<'_>) -> Self {
+        let code = match with_role(&message.envelope, EnvelopeRole::ResultCode) {
+            Some(Value::Int(code)) => i64::try_from(*code).ok(),
+            _ => None,
+        };
+        let text = match with_role(&message.envelope, EnvelopeRole::ResultText) {
+            Some(Value::Text(text)) => text.clone(),
+            _ => String::new(),
+        };
+        let known = model.results.iter().find(|known| Some(known.code) == code);
+        Self { code, known, text }
+    }
+
+    /// Returns `true` if the robot has accepted the request. Without a result code, every response is a success.
+    #[must_use]
+    pub fn is_success(&self) -> bool {
+        self.code.is_none()
+            || self
+                .known
+                .is_some_and(|it| it.role == Some(ResultRole::Success))
+    }
+}
+
+fn with_role<'a>(envelope: &'a [Node<'_>], role: EnvelopeRole) -> Option<&'a Value<'a>> {
+    let has_role = |node: &&Node<'_>| matches!(node.about, About::Envelope(it) if it.role == role);
+    envelope.iter().find(has_role).map(|node| &node.value)
+}
+
+/// The progress of a process after a report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Further reports will come.
+    Running,
+    /// The process has ended.
+    Ended,
+    /// The process has failed.
+    Failed,
+}
+
+/// A process that a call has started.
+#[derive(Clone, Debug)]
+pub struct Process<'m> {
+    model: &'m Model,
+    command: &'m Operation,
+    request: model::Value,
+    response: model::Value,
+}
+
+impl<'m> Process<'m> {
+    /// Begins with the messages of a call.
+    #[must_use]
+    pub fn new(
+        model: &'m Model,
+        command: &'m Operation,
+        request: model::Value,
+        response: model::Value,
+    ) -> Self {
+        Self {
+            model,
+            command,
+            request,
+            response,
+        }
+    }
+
+    /// Returns the progress after a report, or `None` for a report of something else. A report without a state ends the
+    /// process.
+    #[must_use]
+    pub fn progress(&self, report: &Operation, body: &model::Value) -> Option<Progress> {
+        let mut sets_off = self.command.sets_off().iter();
+        let set_off = sets_off.find(|set_off| set_off.report == report.name)?;
+        if !self.is_tied(set_off, body) {
+            return None;
+        }
+        let Exchange::Report {
+            state,
+            failures,
+            messages,
+            ..
+        } = &report.exchange
+        else {
+            return None;
+        };
+        let value = |keys: &[String]| {
+            let (_, shape) = self.model.enum_at(&messages.request.ty, keys)?;
+            let found = at(body, keys)?;
+            let mut values = shape.values.iter();
+            values.find(|value| model::Value::from(&value.wire) == *found)
+        };
+        let has_failed = |keys: &Vec<String>| value(keys).is_some_and(|value| value.is_error);
+        if state.iter().chain(failures).any(has_failed) {
+            return Some(Progress::Failed);
+        }
+        Some(match state {
+            Some(keys) if !value(keys).is_some_and(|value| value.is_final) => Progress::Running,
+            _ => Progress::Ended,
+        })
+    }
+
+    fn is_tied(&self, set_off: &SetOff, body: &model::Value) -> bool {
+        set_off.tied.iter().all(|tie| {
+            let message = match tie.side {
+                Direction::Request => &self.request,
+                Direction::Response => &self.response,
+            };
+            at(message, &tie.command) == at(body, &tie.report)
+        })
+    }
+}
+
+/// Returns the value at a path of wire keys.
+#[must_use]
+pub fn at<'v>(value: &'v model::Value, keys: &[String]) -> Option<&'v model::Value> {
+    keys.iter().try_fold(value, |value, key| value.get(key))
+}
