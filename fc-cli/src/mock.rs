@@ -1,10 +1,13 @@
 //! `fcproto mock`.
 
+use std::time::Duration;
+
+use fc_spec::model::{Kind, Operation};
 use fc_workshop::mock::{Listeners, Settings, serve};
 use fc_workshop::run::{Interrupt, block_on};
 
 use crate::help::{Help, Part};
-use crate::lang::both;
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -32,6 +35,20 @@ pub struct Options {
         help = both("数据端口，0 为任意 [默认：按规范]", "Data port, 0 for any [default: by the spec]")
     )]
     data_port: Option<u16>,
+    #[arg(
+        long,
+        value_name = "MS",
+        default_value = "500",
+        value_parser = clap::value_parser!(u64).range(1..=3_600_000),
+        help = both("过程中两次上报的间隔，规范另有规定时除外", "Time between two reports of a process, unless the spec has one")
+    )]
+    pace: u64,
+    #[arg(
+        long,
+        value_name = "COMMAND",
+        help = both("该指令之后在数据端口发送一帧字节", "Send a frame of bytes on the data port after this command")
+    )]
+    stream_after: Vec<String>,
 }
 
 pub fn help() -> Help {
@@ -39,11 +56,12 @@ pub fn help() -> Help {
         summary: both("按规范模拟一台机器人", "Play a robot from the spec"),
         details: vec![
             Part::Text(both(
-                "模拟端用规范中的示例响应指令，并以协议的结果码拒绝不合规范的请求。有周期的上报按周期发送；没有应答的上报按规范重发。\
-                 标准输出的第一行是两个端口的地址。Ctrl-C 结束。",
-                "The mock responds to commands with the examples of the spec. It refuses requests that break the spec with the results of the \
-                 protocol. It sends reports at their intervals, and repeats those that nobody acknowledges as the spec demands. The first \
-                 line on standard output has the addresses of both ports. Ctrl-C ends it.",
+                "模拟端用规范中的示例响应指令，以协议的结果码拒绝不合规范的请求，以及前提不满足的指令。指令引起的过程从起始状态走到最后，\
+                 每步发送上报；设置过的值可以查到。没有应答的上报按规范重发。标准输出的第一行是两个端口的地址。Ctrl-C 结束。",
+                "The mock responds to commands with the examples of the spec. It refuses requests that break the spec, and commands whose \
+                 preconditions are not met, with the results of the protocol. A process that a command sets off runs from its first state to \
+                 its last, with a report for each. Values that were set can be read. Reports without an acknowledgement are repeated as the \
+                 spec demands. The first line on standard output has the addresses of both ports. Ctrl-C ends the mock.",
             )),
             Part::Examples(vec![
                 (
@@ -72,14 +90,22 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         host: options.host.clone(),
         command_port: options.command_port.unwrap_or(usual.command_port),
         data_port: options.data_port.unwrap_or(usual.data_port),
+        pace: Duration::from_millis(options.pace),
+        stream_after: options.stream_after.clone(),
     };
+    for name in &options.stream_after {
+        let is_command = |operation: &Operation| operation.kind() == Kind::Command;
+        if !model.operation(name).is_some_and(is_command) {
+            return Err(said!("没有指令 `{name}`", "there is no command `{name}`").into());
+        }
+    }
     block_on(async {
         let listeners = Listeners::bind(&settings).await?;
         let (commands, data) = listeners.addresses()?;
         // Before the first line, because its reader may end the mock at once.
         let mut interrupt = Interrupt::new()?;
         print::result(&format!("commands {commands} data {data}\n"))?;
-        serve(model, listeners, interrupt.next()).await;
+        serve(model, &settings, listeners, interrupt.next()).await;
         Ok(Status::Fine)
     })?
 }

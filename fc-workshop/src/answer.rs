@@ -1,8 +1,10 @@
 //! The response to a call, and the process that the call has started.
 
+use crate::paths::{self, at};
 use fc_reflect::{About, Message, Node, Value};
 use fc_spec::model::{
-    self, Direction, EnvelopeRole, Exchange, Model, Operation, ResultCode, ResultRole, SetOff,
+    self, Cadence, Direction, EnvelopeRole, Exchange, Model, Operation, ResultCode, ResultRole,
+    SetOff,
 };
 
 /// The result in the envelope of a response.
@@ -84,8 +86,10 @@ impl<'m> Process<'m> {
         }
     }
 
-    /// Returns the progress after a report, or `None` for a report of something else. A report without a state ends the
-    /// process.
+    /// Returns the progress after a report, or `None` for a report of something else.
+    ///
+    /// A process ends with a final state. If the spec names none, it ends with a state that no other follows, or with the
+    /// largest value of the number whose steps are reported. Any other report ends it.
     #[must_use]
     pub fn progress(&self, report: &Operation, body: &model::Value) -> Option<Progress> {
         let mut sets_off = self.command.sets_off().iter();
@@ -97,6 +101,7 @@ impl<'m> Process<'m> {
             state,
             failures,
             messages,
+            cadence,
             ..
         } = &report.exchange
         else {
@@ -106,15 +111,35 @@ impl<'m> Process<'m> {
             let (_, shape) = self.model.enum_at(&messages.request.ty, keys)?;
             let found = at(body, keys)?;
             let mut values = shape.values.iter();
-            values.find(|value| model::Value::from(&value.wire) == *found)
+            let value = values.find(|value| model::Value::from(&value.wire) == *found)?;
+            Some((shape, value))
         };
-        let has_failed = |keys: &Vec<String>| value(keys).is_some_and(|value| value.is_error);
+        let has_failed = |keys: &Vec<String>| value(keys).is_some_and(|(_, value)| value.is_error);
         if state.iter().chain(failures).any(has_failed) {
             return Some(Progress::Failed);
         }
-        Some(match state {
-            Some(keys) if !value(keys).is_some_and(|value| value.is_final) => Progress::Running,
-            _ => Progress::Ended,
+        let has_ended = match (state, cadence) {
+            (Some(keys), _) => value(keys).is_some_and(|(shape, value)| {
+                let has_final = shape.values.iter().any(|value| value.is_final);
+                value.is_final || (!has_final && value.then.is_empty())
+            }),
+            (None, Some(Cadence::Step(step))) => {
+                let field = paths::field(self.model, &messages.request.ty, &step.field)?;
+                let most = field.details().constraints.max.as_ref();
+                most.is_none_or(|most| {
+                    let keys: Vec<&str> = step.field.split('.').collect();
+                    paths::all(body, &keys, &|value| match value {
+                        model::Value::Number(number) => number.compare(most).is_ge(),
+                        _ => false,
+                    })
+                })
+            }
+            (None, _) => true,
+        };
+        Some(if has_ended {
+            Progress::Ended
+        } else {
+            Progress::Running
         })
     }
 
@@ -127,10 +152,4 @@ impl<'m> Process<'m> {
             at(message, &tie.command) == at(body, &tie.report)
         })
     }
-}
-
-/// Returns the value at a path of wire keys.
-#[must_use]
-pub fn at<'v>(value: &'v model::Value, keys: &[String]) -> Option<&'v model::Value> {
-    keys.iter().try_fold(value, |value, key| value.get(key))
 }

@@ -23,8 +23,10 @@ pub enum ClientError {
         /// Reason.
         error: io::Error,
     },
-    /// The time has passed.
+    /// There is no response in time.
     Timeout(Duration),
+    /// The robot sends nothing for this time.
+    Silence(Duration),
     /// The connection has ended.
     Ended(End),
     /// The request was not sent.
@@ -45,6 +47,13 @@ impl ClientError {
                 text!(
                     "{wait} ms 内没有响应；可用 --timeout 延长",
                     "no response within {wait} ms; wait longer with --timeout"
+                )
+            }
+            Self::Silence(wait) => {
+                let wait = wait.as_millis();
+                text!(
+                    "{wait} ms 内机器人没有发送",
+                    "the robot has sent nothing for {wait} ms"
                 )
             }
             Self::Ended(End::Closed) => {
@@ -146,7 +155,7 @@ impl<'m> Client<'m> {
             let event = match end {
                 Some(end) => timeout_at(end, next)
                     .await
-                    .map_err(|_| ClientError::Timeout(wait))?,
+                    .map_err(|_| ClientError::Silence(wait))?,
                 None => next.await,
             };
             self.take(event)?;
@@ -166,7 +175,7 @@ impl<'m> Client<'m> {
                 }
             }
         });
-        arrived.await.map_err(|_| ClientError::Timeout(wait))?
+        arrived.await.map_err(|_| ClientError::Silence(wait))?
     }
 
     /// Sends a whole frame, and closes the connection behind it.

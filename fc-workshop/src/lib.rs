@@ -9,6 +9,7 @@ pub mod client;
 pub mod connection;
 pub mod facts;
 pub mod mock;
+pub mod paths;
 pub mod run;
 pub mod stream;
 pub mod table;

@@ -3,9 +3,10 @@
 use std::time::Duration;
 
 use fc_reflect::{BodyError, Direction, Frame, Message};
-use fc_spec::model::{Field, Kind, Lang, Model, Number, Operation, Type, TypeShape, Value};
+use fc_spec::model::{Kind, Lang, Model, Number, Operation, Value};
 use fc_workshop::answer::Outcome;
 use fc_workshop::arguments::json;
+use fc_workshop::paths;
 use fc_workshop::table::{aligned, table};
 
 use crate::lang::{lang, said};
@@ -153,7 +154,9 @@ pub fn list(model: &Model, is_json: bool) -> String {
 
 /// Returns the error of a request, with the accepted numbers of the field.
 pub fn breaks_the_spec(model: &Model, operation: &Operation, error: &BodyError) -> Failure {
-    let accepted = field(model, operation, error.path()).and_then(|field| {
+    let body = operation.body(Direction::Request);
+    let field = body.and_then(|body| paths::field(model, &body.ty, error.path()));
+    let accepted = field.and_then(|field| {
         let numbers = field.details().constraints.numbers()?;
         let unit = field.details().unit.as_deref().unwrap_or_default();
         Some(
@@ -169,24 +172,4 @@ pub fn breaks_the_spec(model: &Model, operation: &Operation, error: &BodyError) 
         "the request breaks the spec and was not sent: {error}{accepted}"
     )
     .into()
-}
-
-/// Returns the field at a path such as `data.stations[3].x`.
-fn field<'m>(model: &'m Model, operation: &'m Operation, path: &str) -> Option<&'m Field> {
-    let body = operation.body(Direction::Request)?;
-    let mut shape = Some(model.types.structure(&body.ty));
-    let mut found = None;
-    for step in path.split('.') {
-        let key = step.split('[').next().unwrap_or_default();
-        let field = shape?.field(key)?;
-        shape = match field.ty.item() {
-            Type::Named(named) => match &model.types.get(named).shape {
-                TypeShape::Struct(shape) => Some(shape),
-                TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-            },
-            _ => None,
-        };
-        found = Some(field);
-    }
-    found
 }

@@ -13,23 +13,23 @@ pub(super) struct Report {
     pub(super) ack: AckPolicy,
 }
 
-/// The queues of reports, one for each connected app.
-pub(super) struct Apps {
-    queues: RefCell<Vec<Sender<Report>>>,
-    /// The maximum number of reports that wait for one app.
+/// The queues of the connected apps.
+pub(super) struct Apps<T> {
+    queues: RefCell<Vec<Sender<T>>>,
+    /// The maximum number of items that wait for one app.
     most: usize,
 }
 
-impl Apps {
+impl<T: Clone> Apps<T> {
     pub(super) fn new(most: usize) -> Self {
         Self {
-            queues: RefCell::default(),
+            queues: RefCell::new(Vec::new()),
             most: most.max(1),
         }
     }
 
     /// Adds an app, which leaves when it drops the receiver.
-    pub(super) fn join(&self) -> Receiver<Report> {
+    pub(super) fn join(&self) -> Receiver<T> {
         let (sender, receiver) = channel(self.most);
         let mut queues = self.queues.borrow_mut();
         queues.retain(|queue| !queue.is_closed());
@@ -37,10 +37,10 @@ impl Apps {
         receiver
     }
 
-    /// Sends a report to all apps. An app with a full queue misses it.
-    pub(super) fn send(&self, report: &Report) {
+    /// Sends an item to all apps. An app with a full queue misses it.
+    pub(super) fn send(&self, item: &T) {
         for queue in self.queues.borrow().iter() {
-            let _ = queue.try_send(report.clone());
+            let _ = queue.try_send(item.clone());
         }
     }
 }

@@ -3,25 +3,29 @@
 //! [`Mock::start`] runs one in a thread, for tests. [`serve`] runs one in the caller's task.
 
 mod apps;
+mod memory;
+mod process;
 mod robot;
+mod streams;
 
 use crate::connection::{Connection, Event};
 use crate::facts;
-use apps::Apps;
+use apps::{Apps, Report};
 use fc_reflect::Reflector;
-use fc_spec::model::{Model, PortRole, Text};
+use fc_spec::model::{Model, Text};
 use fc_spec::text;
 use futures_util::stream::{FuturesUnordered, StreamExt as _};
-use robot::Robot;
+use robot::{Answer, Robot};
 use std::cell::RefCell;
 use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use std::{fmt, io};
+use streams::Streams;
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::oneshot;
+use tokio::sync::{Notify, oneshot};
 
 /// The addresses on which a mock listens.
 #[derive(Clone, Debug)]
@@ -32,6 +36,10 @@ pub struct Settings {
     pub command_port: u16,
     /// Port of streams; 0 for any free port.
     pub data_port: u16,
+    /// The time between two reports of a process whose interval the spec does not specify.
+    pub pace: Duration,
+    /// Names of commands after which bytes with their code and message id are sent on the data port.
+    pub stream_after: Vec<String>,
 }
 
 impl Settings {
@@ -42,6 +50,8 @@ impl Settings {
             host: "127.0.0.1".to_owned(),
             command_port: 0,
             data_port: 0,
+            pace: Duration::from_millis(500),
+            stream_after: Vec::new(),
         }
     }
 
@@ -133,77 +143,153 @@ async fn listen(host: &str, port: u16) -> Result<TcpListener, MockError> {
 }
 
 /// Plays the robot of a model until `end` is ready.
-pub async fn serve(model: &Model, listeners: Listeners, end: impl Future<Output = ()>) {
+pub async fn serve(
+    model: &Model,
+    settings: &Settings,
+    listeners: Listeners,
+    end: impl Future<Output = ()>,
+) {
     let reflector = &Reflector::new(model);
-    let most = facts::limits(model).connections;
-    let robot = &RefCell::new(Robot::new(reflector));
-    let apps = &Apps::new(facts::limits(model).queued_reports);
+    let limits = facts::limits(model);
+    let stage = &Stage {
+        reflector,
+        robot: RefCell::new(Robot::new(reflector, settings.pace)),
+        apps: Apps::new(limits.queued_reports),
+        streams: RefCell::new(Streams::new(reflector, settings)),
+        data: Apps::new(limits.queued_reports),
+        planned: Notify::new(),
+    };
     let mut talks = FuturesUnordered::new();
+    let mut data = FuturesUnordered::new();
     let mut end = pin!(end);
     loop {
-        let due = robot.borrow().next_due();
+        let due = stage.next_due();
         tokio::select! {
             () = &mut end => return,
-            accepted = listeners.commands.accept(), if talks.len() < most => {
+            accepted = listeners.commands.accept(), if talks.len() < limits.connections => {
                 if let Ok((stream, _)) = accepted {
-                    talks.push(talk(reflector, robot, apps, PortRole::Command, stream));
+                    talks.push(stage.talk(stream));
                 }
             }
-            accepted = listeners.data.accept(), if talks.len() < most => {
+            accepted = listeners.data.accept(), if data.len() < limits.connections => {
                 if let Ok((stream, _)) = accepted {
-                    talks.push(talk(reflector, robot, apps, PortRole::Data, stream));
+                    data.push(stage.stream(stream));
                 }
             }
             Some(()) = talks.next(), if !talks.is_empty() => {}
-            () = until(due) => {
-                for report in robot.borrow_mut().due(Instant::now()) {
-                    apps.send(&report);
-                }
-            }
+            Some(()) = data.next(), if !data.is_empty() => {}
+            () = until(due) => stage.send_due(),
+            // The next report may now be an earlier one.
+            () = stage.planned.notified() => {}
         }
     }
 }
 
-/// Talks with one app until it ends the connection.
-async fn talk<'m>(
+/// The parts of a mock that its connections share.
+struct Stage<'m> {
     reflector: &'m Reflector<'m>,
-    robot: &RefCell<Robot<'m>>,
-    apps: &Apps,
-    port: PortRole,
-    stream: TcpStream,
-) {
-    // Without it, small frames only travel later.
-    let _ = stream.set_nodelay(true);
-    let mut connection: Connection<'m, _, ()> = Connection::new(reflector, stream);
-    let mut reports = apps.join();
-    loop {
-        tokio::select! {
-            event = connection.next() => {
-                let answer = match event {
-                    Event::Command(frame) | Event::Report(frame) => {
-                        robot.borrow_mut().answer(&frame)
-                    }
-                    Event::Stream(frame) if port == PortRole::Command => {
-                        robot.borrow_mut().answer(&frame)
-                    }
-                    Event::Invalid(id, error) => robot.borrow_mut().answer_invalid(id, &error),
-                    Event::Ended(_) => break,
-                    Event::Answer(..) | Event::Expired(()) | Event::Late(_) | Event::Stream(_) => None,
-                };
-                if let Some(bytes) = answer {
-                    connection.send(&bytes);
-                }
-            }
-            Some(report) = reports.recv() => {
-                let kind = reflector.model().frame.kinds.report.value;
-                let data = Arc::clone(&report.data);
-                // An app with too many unacknowledged reports misses this one.
-                let _ = connection.request(kind, report.code, data, report.ack, ());
-            }
+    robot: RefCell<Robot<'m>>,
+    /// Connections of the command port.
+    apps: Apps<Report>,
+    streams: RefCell<Streams<'m>>,
+    /// Connections of the data port.
+    data: Apps<Arc<[u8]>>,
+    /// Notified after a command, which may have planned reports.
+    planned: Notify,
+}
+
+impl<'m> Stage<'m> {
+    fn next_due(&self) -> Option<Instant> {
+        let report = self.robot.borrow().next_due();
+        let stream = self.streams.borrow().next_due();
+        report.into_iter().chain(stream).min()
+    }
+
+    fn send_due(&self) {
+        let now = Instant::now();
+        while let Some(report) = self.robot.borrow_mut().due(now) {
+            self.apps.send(&report);
+        }
+        for frame in self.streams.borrow_mut().due(now) {
+            self.data.send(&frame);
         }
     }
-    // The app may have closed only its sending side.
-    let _ = connection.finish().await;
+
+    /// Talks with one app until it ends the connection.
+    async fn talk(&self, stream: TcpStream) {
+        // Without it, small frames only travel later.
+        let _ = stream.set_nodelay(true);
+        let mut connection: Connection<'m, _, ()> = Connection::new(self.reflector, stream);
+        let mut reports = self.apps.join();
+        let mut is_greeted = false;
+        loop {
+            tokio::select! {
+                event = connection.next() => {
+                    let Some(answer) = (match event {
+                        Event::Ended(_) => break,
+                        other => self.answer(other),
+                    }) else {
+                        continue;
+                    };
+                    connection.send(&answer.bytes);
+                    if answer.accepted.is_some() && !std::mem::replace(&mut is_greeted, true) {
+                        for report in self.robot.borrow().greeting() {
+                            self.push(&mut connection, &report);
+                        }
+                    }
+                }
+                Some(report) = reports.recv() => self.push(&mut connection, &report),
+            }
+        }
+        // The app may have closed only its sending side.
+        let _ = connection.finish().await;
+    }
+
+    /// Returns the answer to a request of an app.
+    fn answer(&self, event: Event<'m, ()>) -> Option<Answer<'m>> {
+        let mut robot = self.robot.borrow_mut();
+        match event {
+            Event::Command(frame) | Event::Report(frame) | Event::Stream(frame) => {
+                let answer = robot.answer(&frame)?;
+                self.planned.notify_one();
+                if let Some(command) = answer.accepted {
+                    let mut streams = self.streams.borrow_mut();
+                    if let Some(bytes) = streams.accept(command, frame.id) {
+                        self.data.send(&bytes);
+                    }
+                }
+                Some(answer)
+            }
+            Event::Invalid(id, error) => robot.answer_invalid(id, &error),
+            Event::Answer(..) | Event::Expired(()) | Event::Late(_) | Event::Ended(_) => None,
+        }
+    }
+
+    fn push(&self, connection: &mut Connection<'m, TcpStream, ()>, report: &Report) {
+        let kind = self.reflector.model().frame.kinds.report.value;
+        let data = Arc::clone(&report.data);
+        // An app with too many unacknowledged reports misses this one.
+        let _ = connection.request(kind, report.code, data, report.ack, ());
+    }
+
+    /// Sends streams to one app until it ends the connection.
+    async fn stream(&self, stream: TcpStream) {
+        // Without it, small frames only travel later.
+        let _ = stream.set_nodelay(true);
+        let mut connection: Connection<'m, _, ()> = Connection::new(self.reflector, stream);
+        let mut frames = self.data.join();
+        for frame in self.streams.borrow().latest() {
+            connection.send(frame);
+        }
+        loop {
+            tokio::select! {
+                event = connection.next() => if let Event::Ended(_) = event { break },
+                Some(frame) = frames.recv() => connection.send(&frame),
+            }
+        }
+        // The app may have closed only its sending side.
+        let _ = connection.finish().await;
+    }
 }
 
 async fn until(due: Option<Instant>) {
@@ -236,7 +322,7 @@ impl Mock {
         let (commands, data) = listeners.addresses()?;
         let (stop, stopped) = oneshot::channel::<()>();
         let run = move || {
-            runtime.block_on(serve(&model, listeners, async {
+            runtime.block_on(serve(&model, &settings, listeners, async {
                 // A dropped sender stops the mock, too.
                 let _ = stopped.await;
             }));

@@ -1,6 +1,8 @@
 //! The robot of a mock: its answers and its reports.
 
 use super::apps::Report;
+use super::memory::Memory;
+use super::process;
 use crate::facts;
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Frame, FrameError, FrameId, Packing, Reflector};
@@ -12,52 +14,103 @@ use std::time::{Duration, Instant};
 /// A robot without a connection.
 pub(super) struct Robot<'m> {
     reflector: &'m Reflector<'m>,
-    /// Reports at intervals, with the time of the next one.
-    periodic: Vec<(Instant, Duration, &'m Operation)>,
+    memory: Memory,
+    /// Reports that are planned.
+    plan: Vec<Planned<'m>>,
+    /// The time between two reports of a process whose interval the spec does not specify.
+    pace: Duration,
+}
+
+/// A report that is planned.
+struct Planned<'m> {
+    due: Instant,
+    report: &'m Operation,
+    message: Value,
+    /// The interval of a report that is sent again and again.
+    interval: Option<Duration>,
+}
+
+/// The response to a request.
+pub(super) struct Answer<'m> {
+    pub(super) bytes: Vec<u8>,
+    /// The command, if it was accepted.
+    pub(super) accepted: Option<&'m Operation>,
 }
 
 impl<'m> Robot<'m> {
-    pub(super) fn new(reflector: &'m Reflector<'m>) -> Self {
+    pub(super) fn new(reflector: &'m Reflector<'m>, pace: Duration) -> Self {
         let now = Instant::now();
-        let operations = reflector.model().operations.iter();
-        let periodic = operations.filter_map(|operation| match operation.cadence() {
-            Some(Cadence::EveryMs(interval)) => {
-                let interval = Duration::from_millis(u64::from(*interval).max(1));
-                Some((now + interval, interval, operation))
-            }
-            _ => None,
-        });
-        Self {
+        let model = reflector.model();
+        let mut robot = Self {
             reflector,
-            periodic: periodic.collect(),
+            memory: Memory::new(model),
+            plan: Vec::new(),
+            pace,
+        };
+        for report in spontaneous(reflector) {
+            if let Some(Cadence::EveryMs(interval)) = report.cadence() {
+                let interval = Duration::from_millis(u64::from(*interval).max(1));
+                robot.plan.push(Planned {
+                    due: now + interval,
+                    report,
+                    message: robot.sample(report),
+                    interval: Some(interval),
+                });
+            }
         }
+        robot
+    }
+
+    fn sample(&self, report: &Operation) -> Value {
+        let samples = self.reflector.samples();
+        samples.message(report, Direction::Request, Profile::Example)
     }
 
     /// Returns the time of the next report.
     pub(super) fn next_due(&self) -> Option<Instant> {
-        self.periodic.iter().map(|(due, _, _)| *due).min()
+        self.plan.iter().map(|planned| planned.due).min()
     }
 
-    /// Returns the reports that are due.
-    pub(super) fn due(&mut self, now: Instant) -> Vec<Report> {
-        let mut reports = Vec::new();
-        for (due, interval, operation) in &mut self.periodic {
-            if *due <= now {
-                *due = now + *interval;
-                reports.push(*operation);
+    /// Returns the next report that is due.
+    pub(super) fn due(&mut self, now: Instant) -> Option<Report> {
+        let due = self.plan.iter().enumerate();
+        let (first, planned) = due.min_by_key(|(_, planned)| planned.due)?;
+        if planned.due > now {
+            return None;
+        }
+        let (report, message) = (planned.report, planned.message.clone());
+        match planned.interval {
+            Some(interval) => {
+                if let Some(planned) = self.plan.get_mut(first) {
+                    planned.due = now + interval;
+                }
+            }
+            None => {
+                self.plan.remove(first);
+                self.memory
+                    .observe(self.reflector.model(), report, &message);
             }
         }
-        let reports = reports.into_iter();
-        reports.filter_map(|report| self.report(report)).collect()
+        self.report(report, message)
     }
 
-    fn report(&self, operation: &Operation) -> Option<Report> {
-        let samples = self.reflector.samples();
-        let mut message = samples.message(operation, Direction::Request, Profile::Example);
-        facts::stamp(self.reflector.model(), Direction::Request, &mut message);
+    /// Returns one of each report that no command sets off and that has no interval.
+    pub(super) fn greeting(&self) -> Vec<Report> {
+        let reports = spontaneous(self.reflector);
+        let reports = reports.filter(|it| !matches!(it.cadence(), Some(Cadence::EveryMs(_))));
+        reports
+            .filter_map(|report| self.report(report, self.sample(report)))
+            .collect()
+    }
+
+    fn report(&self, operation: &Operation, mut message: Value) -> Option<Report> {
         let Exchange::Report { ack, .. } = &operation.exchange else {
             return None;
         };
+        let model = self.reflector.model();
+        let direction = Direction::Request;
+        (self.memory).fill(model, operation, direction, &mut message);
+        facts::stamp(model, direction, &mut message);
         Some(Report {
             code: operation.code.value?,
             data: message.to_string().into_bytes().into(),
@@ -66,7 +119,7 @@ impl<'m> Robot<'m> {
     }
 
     /// Returns the answer to a request.
-    pub(super) fn answer(&mut self, frame: &Frame<'m>) -> Option<Vec<u8>> {
+    pub(super) fn answer(&mut self, frame: &Frame<'m>) -> Option<Answer<'m>> {
         let model = self.reflector.model();
         let is_mine = |operation: &&Operation| {
             operation.kind() == Kind::Command && operation.sender == Side::App
@@ -76,21 +129,63 @@ impl<'m> Robot<'m> {
         };
         let direction = Direction::Request;
         let read = (self.reflector).message(Some(operation), direction, &frame.data);
-        if let Err(error) = read.and_then(|message| message.body) {
-            return self.refuse(frame.id, ResultRole::Invalid, &error.to_string());
+        let text = match read.and_then(|message| message.canonical()) {
+            Ok(text) => text,
+            Err(error) => {
+                return self.refuse(frame.id, ResultRole::Invalid, &error.to_string());
+            }
+        };
+        if let Some(objection) = self.memory.objection(model, operation) {
+            return self.refuse(frame.id, ResultRole::Protocol, &objection);
         }
+        let request = crate::arguments::json(&text).unwrap_or(Value::Null);
+        self.memory.accept(model, operation, &request);
         let success = facts::result(model, ResultRole::Success)?;
-        let message = (self.reflector.samples()).response(Some(operation), success);
-        self.seal(frame.id.answer(), message)
+        let mut message = (self.reflector.samples()).response(Some(operation), success);
+        (self.memory).fill(model, operation, Direction::Response, &mut message);
+        self.begin(operation, &request, &message);
+        let bytes = self.seal(frame.id.answer(), message)?;
+        Some(Answer {
+            bytes,
+            accepted: Some(operation),
+        })
+    }
+
+    /// Plans the reports that a command sets off. They replace those of a process that still runs.
+    fn begin(&mut self, command: &'m Operation, request: &Value, response: &Value) {
+        let now = Instant::now();
+        for set_off in command.sets_off() {
+            let Some(report) = self.reflector.model().operation(&set_off.report) else {
+                continue;
+            };
+            self.plan
+                .retain(|planned| planned.report.name != report.name);
+            let steps = process::steps(
+                self.reflector,
+                set_off,
+                report,
+                request,
+                response,
+                self.pace,
+            );
+            self.plan.extend(steps.into_iter().map(|step| Planned {
+                due: now + step.after,
+                report,
+                message: step.message,
+                interval: None,
+            }));
+        }
     }
 
     /// Returns the answer to a frame with an error.
-    pub(super) fn answer_invalid(&mut self, id: FrameId, error: &FrameError) -> Option<Vec<u8>> {
-        (id.direction == Direction::Request)
-            .then(|| self.refuse(id, ResultRole::Protocol, error.fault.name()))?
+    pub(super) fn answer_invalid(&mut self, id: FrameId, error: &FrameError) -> Option<Answer<'m>> {
+        if id.direction == Direction::Response {
+            return None;
+        }
+        self.refuse(id, ResultRole::Protocol, error.fault.name())
     }
 
-    fn refuse(&self, id: FrameId, role: ResultRole, reason: &str) -> Option<Vec<u8>> {
+    fn refuse(&self, id: FrameId, role: ResultRole, reason: &str) -> Option<Answer<'m>> {
         let model = self.reflector.model();
         model.envelope.result_code()?;
         let result = facts::result(model, role)?;
@@ -98,7 +193,10 @@ impl<'m> Robot<'m> {
         if !reason.is_empty() {
             self.set_text(&mut message, result, reason);
         }
-        self.seal(id.answer(), message)
+        Some(Answer {
+            bytes: self.seal(id.answer(), message)?,
+            accepted: None,
+        })
     }
 
     /// Adds the reason of a refusal to its text.
@@ -118,4 +216,13 @@ impl<'m> Robot<'m> {
             .seal(id, data.as_bytes(), Packing::Plain)
             .ok()
     }
+}
+
+/// Returns the reports that no command sets off.
+fn spontaneous<'m>(reflector: &Reflector<'m>) -> impl Iterator<Item = &'m Operation> {
+    let model = reflector.model();
+    let reports = model.operations.iter();
+    reports.filter(|report| {
+        report.kind() == Kind::Report && model.commands_that_set_off(report).next().is_none()
+    })
 }
