@@ -35,6 +35,7 @@ const GUIDES: [page: string, zh: string, en: string][] = [
   ['releases', '发布、豁免与变更记录', 'Releases, waivers and changelogs'],
   ['targets', '生成目标和目录', 'Targets and directories'],
   ['lint', '团队规则与规范检查', 'House rules and the lint'],
+  ['workshop', '联调工具', 'Workshop'],
   ['reading-a-capture', '分析抓包', 'Reading a capture'],
   ['porting', '移植到其他语言', 'Porting to another language'],
   ['what-changed', '与旧文档的差异', 'Changes from the old document'],

@@ -1,17 +1,23 @@
 //! `fcproto mock`.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
+use fc_reflect::Reflector;
+use fc_spec::diagnostic::Faults;
 use fc_spec::model::{Kind, Operation};
+use fc_spec::source::Sources;
 use fc_workshop::mock::{Listeners, Settings, serve};
 use fc_workshop::run::{Interrupt, block_on};
+use fc_workshop::scenario::{Scenario, Verdict};
 
 use crate::help::{Help, Part};
-use crate::lang::{both, said};
+use crate::input;
+use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
-use crate::spec::Spec;
+use crate::spec::{Spec, show_faults};
 
 /// Options of `fcproto mock`.
 #[derive(Debug, clap::Args)]
@@ -49,6 +55,18 @@ pub struct Options {
         help = both("该指令之后在数据端口发送一帧字节", "Send a frame of bytes on the data port after this command")
     )]
     stream_after: Vec<String>,
+    #[arg(
+        long,
+        value_name = "FILE",
+        help = both("按场景文件响应", "Respond as a scenario says")
+    )]
+    scenario: Option<PathBuf>,
+    #[arg(
+        long,
+        requires = "scenario",
+        help = both("场景的期望满足时以 0 退出，否则以 1 退出", "Exit with 0 once the app has met the scenario, otherwise with 1")
+    )]
+    expect: bool,
 }
 
 pub fn help() -> Help {
@@ -74,7 +92,10 @@ pub fn help() -> Help {
                 ),
             ]),
         ],
-        fails: both("规范有错误", "Errors in the spec"),
+        fails: both(
+            "规范或场景有错误，或 app 不符合场景",
+            "Errors in the spec or the scenario, or an app that does not meet it",
+        ),
         speaks: "",
     }
 }
@@ -86,17 +107,29 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Ok(spec.status());
     };
     let usual = Settings::of(model);
-    let settings = Settings {
+    let mut settings = Settings {
         host: options.host.clone(),
         command_port: options.command_port.unwrap_or(usual.command_port),
         data_port: options.data_port.unwrap_or(usual.data_port),
         pace: Duration::from_millis(options.pace),
         stream_after: options.stream_after.clone(),
+        scenario: None,
+        expect: options.expect,
     };
     for name in &options.stream_after {
         let is_command = |operation: &Operation| operation.kind() == Kind::Command;
         if !model.operation(name).is_some_and(is_command) {
             return Err(said!("没有指令 `{name}`", "there is no command `{name}`").into());
+        }
+    }
+    if let Some(file) = &options.scenario {
+        let text = input::text(file)?;
+        let sources = Sources::from_texts([(file.display().to_string(), text)]);
+        let mut faults = Faults::new();
+        settings.scenario = Scenario::read(&Reflector::new(model), &sources, &mut faults);
+        if settings.scenario.is_none() {
+            show_faults(&faults, &sources)?;
+            return Ok(Status::Faulty);
         }
     }
     block_on(async {
@@ -105,7 +138,16 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         // Before the first line, because its reader may end the mock at once.
         let mut interrupt = Interrupt::new()?;
         print::result(&format!("commands {commands} data {data}\n"))?;
-        serve(model, &settings, listeners, interrupt.next()).await;
-        Ok(Status::Fine)
+        let verdict = serve(model, &settings, listeners, interrupt.next()).await;
+        let Some(verdict) = verdict.filter(|_| settings.expect) else {
+            return Ok(Status::Fine);
+        };
+        let text = in_lang(&verdict.text());
+        if verdict == Verdict::Met {
+            print::done(&format!("{text}\n"))?;
+            return Ok(Status::Fine);
+        }
+        print::failure(Failure::from(text).as_ref());
+        Ok(Status::Faulty)
     })?
 }

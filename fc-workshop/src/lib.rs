@@ -11,5 +11,6 @@ pub mod facts;
 pub mod mock;
 pub mod paths;
 pub mod run;
+pub mod scenario;
 pub mod stream;
 pub mod table;

@@ -13,6 +13,9 @@ use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::print;
 
+/// The largest number of times that are kept for the summary.
+const MOST_TIMES: usize = 1 << 16;
+
 /// The settings of a call.
 pub struct Call<'r, 'm> {
     pub reflector: &'r Reflector<'m>,
@@ -49,12 +52,14 @@ impl<'m> Call<'_, 'm> {
             return self.stream(&mut client, request, operation).await;
         }
         let mut status = Status::Fine;
+        let mut times = Vec::new();
         for _ in 0..self.repeat {
-            let one = self.once(&mut client, request).await?;
+            let one = self.once(&mut client, request, &mut times).await?;
             if one != Status::Fine {
                 status = one;
             }
         }
+        print::result(&self.shown.times(times))?;
         Ok(status)
     }
 
@@ -62,12 +67,16 @@ impl<'m> Call<'_, 'm> {
         &self,
         client: &mut Client<'m>,
         request: &Request<'m>,
+        times: &mut Vec<Duration>,
     ) -> Result<Status, Failure> {
         let begun = Instant::now();
         let data = request.data.as_slice().into();
         let called = client.call(request.kind, request.code, data, self.timeout);
         let frame = called.await?;
         let took = begun.elapsed();
+        if times.len() < MOST_TIMES {
+            times.push(took);
+        }
         let message = (self.reflector).message(request.operation, Direction::Response, &frame.data);
         let message = match message {
             Ok(message) => message,

@@ -59,9 +59,23 @@ impl Format {
             format!("  {text}")
         };
         let code = code.unwrap_or_default();
-        let took = format!("{:.1} ms", milliseconds(took));
         let nodes = message.body.as_deref().unwrap_or_default();
-        format!("{name}{code}{text}  {took}\n{}", table(nodes, self.lang))
+        format!("{name}{code}{text}\n{}", table(nodes, self.lang))
+    }
+
+    /// Shows the times of several calls. In JSON, each response has its own.
+    pub fn times(self, mut times: Vec<Duration>) -> String {
+        times.sort();
+        let at = |index: usize| times.get(index).copied().map_or(0.0, milliseconds);
+        let (count, last) = (times.len(), times.len().saturating_sub(1));
+        if self.json || count < 2 {
+            return String::new();
+        }
+        let (least, median, most) = (at(0), at(last / 2), at(last));
+        said!(
+            "{count} 次响应：最短 {least} ms，中位 {median} ms，最长 {most} ms\n",
+            "{count} responses: shortest {least} ms, median {median} ms, longest {most} ms\n"
+        )
     }
 
     /// Shows a report or a frame of a stream.

@@ -10,6 +10,7 @@ mod streams;
 
 use crate::connection::{Connection, Event};
 use crate::facts;
+use crate::scenario::{Scenario, Verdict};
 use apps::{Apps, Report};
 use fc_reflect::Reflector;
 use fc_spec::model::{Model, Text};
@@ -27,7 +28,10 @@ use streams::Streams;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Notify, oneshot};
 
-/// The addresses on which a mock listens.
+/// Time between the last expected event of a scenario and its end.
+const CALM: Duration = Duration::from_millis(300);
+
+/// The settings of a mock.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Host name or address.
@@ -40,6 +44,10 @@ pub struct Settings {
     pub pace: Duration,
     /// Names of commands after which bytes with their code and message id are sent on the data port.
     pub stream_after: Vec<String>,
+    /// The scenario to play.
+    pub scenario: Option<Scenario>,
+    /// `true` if the mock ends with the scenario: when its expectations are met or broken, or its time is over.
+    pub expect: bool,
 }
 
 impl Settings {
@@ -52,6 +60,8 @@ impl Settings {
             data_port: 0,
             pace: Duration::from_millis(500),
             stream_after: Vec::new(),
+            scenario: None,
+            expect: false,
         }
     }
 
@@ -142,18 +152,18 @@ async fn listen(host: &str, port: u16) -> Result<TcpListener, MockError> {
     })
 }
 
-/// Plays the robot of a model until `end` is ready.
+/// Plays the robot of a model until `end` is ready, or until its scenario ends. Returns the verdict of a scenario.
 pub async fn serve(
     model: &Model,
     settings: &Settings,
     listeners: Listeners,
     end: impl Future<Output = ()>,
-) {
+) -> Option<Verdict> {
     let reflector = &Reflector::new(model);
     let limits = facts::limits(model);
     let stage = &Stage {
         reflector,
-        robot: RefCell::new(Robot::new(reflector, settings.pace)),
+        robot: RefCell::new(Robot::new(reflector, settings)),
         apps: Apps::new(limits.queued_reports),
         streams: RefCell::new(Streams::new(reflector, settings)),
         data: Apps::new(limits.queued_reports),
@@ -162,10 +172,24 @@ pub async fn serve(
     let mut talks = FuturesUnordered::new();
     let mut data = FuturesUnordered::new();
     let mut end = pin!(end);
+    let scenario = settings.scenario.as_ref().filter(|_| settings.expect);
+    let mut over = scenario.and_then(|it| Instant::now().checked_add(it.within));
+    let mut is_met = false;
     loop {
         let due = stage.next_due();
+        let verdict = stage.robot.borrow().verdict();
+        match &verdict {
+            Some(Verdict::Forbidden(_)) if settings.expect => return verdict,
+            Some(Verdict::Met) if settings.expect && !is_met => {
+                // The app still receives its last response, and may still send what it must not send.
+                is_met = true;
+                over = Instant::now().checked_add(CALM);
+            }
+            _ => {}
+        }
         tokio::select! {
-            () = &mut end => return,
+            () = &mut end => return verdict,
+            () = until(over), if over.is_some() => return verdict,
             accepted = listeners.commands.accept(), if talks.len() < limits.connections => {
                 if let Ok((stream, _)) = accepted {
                     talks.push(stage.talk(stream));
@@ -231,7 +255,14 @@ impl<'m> Stage<'m> {
                     }) else {
                         continue;
                     };
+                    if !answer.delay.is_zero() {
+                        // Responses keep their order, and the next request waits in the socket.
+                        tokio::time::sleep(answer.delay).await;
+                    }
                     connection.send(&answer.bytes);
+                    if answer.disconnect {
+                        break;
+                    }
                     if answer.accepted.is_some() && !std::mem::replace(&mut is_greeted, true) {
                         for report in self.robot.borrow().greeting() {
                             self.push(&mut connection, &report);
@@ -261,7 +292,12 @@ impl<'m> Stage<'m> {
                 Some(answer)
             }
             Event::Invalid(id, error) => robot.answer_invalid(id, &error),
-            Event::Answer(..) | Event::Expired(()) | Event::Late(_) | Event::Ended(_) => None,
+            Event::Answer((), frame) => {
+                robot.acknowledged(&frame);
+                self.planned.notify_one();
+                None
+            }
+            Event::Expired(()) | Event::Late(_) | Event::Ended(_) => None,
         }
     }
 
@@ -305,7 +341,7 @@ pub struct Mock {
     commands: SocketAddr,
     data: SocketAddr,
     stop: Option<oneshot::Sender<()>>,
-    thread: Option<JoinHandle<()>>,
+    thread: Option<JoinHandle<Option<Verdict>>>,
 }
 
 impl Mock {
@@ -325,7 +361,7 @@ impl Mock {
             runtime.block_on(serve(&model, &settings, listeners, async {
                 // A dropped sender stops the mock, too.
                 let _ = stopped.await;
-            }));
+            }))
         };
         let thread = std::thread::Builder::new().name("mock".to_owned());
         let thread = thread.spawn(run).map_err(MockError::System)?;
@@ -335,6 +371,12 @@ impl Mock {
             stop: Some(stop),
             thread: Some(thread),
         })
+    }
+
+    /// Waits for the end of a scenario with `expect`, and returns its verdict.
+    #[must_use]
+    pub fn verdict(mut self) -> Option<Verdict> {
+        self.thread.take().and_then(|thread| thread.join().ok())?
     }
 
     /// Returns the address of the command port.

@@ -1,15 +1,22 @@
 //! The robot of a mock: its answers and its reports.
 
+use super::Settings;
 use super::apps::Report;
 use super::memory::Memory;
 use super::process;
+use crate::arguments::json;
 use crate::facts;
+use crate::scenario::{Action, Play, Verdict, merge};
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Frame, FrameError, FrameId, Packing, Reflector};
 use fc_spec::model::{
-    Cadence, EnvelopeRole, Exchange, Kind, Operation, ResultCode, ResultRole, Side, Value,
+    Cadence, EnvelopeRole, Exchange, HeaderRole, Kind, Operation, ResultCode, ResultRole, Side,
+    Value,
 };
 use std::time::{Duration, Instant};
+
+/// The largest number of planned reports.
+const MOST_PLANNED: usize = 4096;
 
 /// A robot without a connection.
 pub(super) struct Robot<'m> {
@@ -19,6 +26,7 @@ pub(super) struct Robot<'m> {
     plan: Vec<Planned<'m>>,
     /// The time between two reports of a process whose interval the spec does not specify.
     pace: Duration,
+    scenario: Option<Play>,
 }
 
 /// A report that is planned.
@@ -32,20 +40,37 @@ struct Planned<'m> {
 
 /// The response to a request.
 pub(super) struct Answer<'m> {
+    /// The frame; empty if there is no response.
     pub(super) bytes: Vec<u8>,
     /// The command, if it was accepted.
     pub(super) accepted: Option<&'m Operation>,
+    /// Time before the response.
+    pub(super) delay: Duration,
+    /// `true` if the connection ends after the response.
+    pub(super) disconnect: bool,
+}
+
+impl<'m> Answer<'m> {
+    fn new(bytes: Vec<u8>, accepted: Option<&'m Operation>) -> Self {
+        Self {
+            bytes,
+            accepted,
+            delay: Duration::ZERO,
+            disconnect: false,
+        }
+    }
 }
 
 impl<'m> Robot<'m> {
-    pub(super) fn new(reflector: &'m Reflector<'m>, pace: Duration) -> Self {
+    pub(super) fn new(reflector: &'m Reflector<'m>, settings: &Settings) -> Self {
         let now = Instant::now();
         let model = reflector.model();
         let mut robot = Self {
             reflector,
             memory: Memory::new(model),
             plan: Vec::new(),
-            pace,
+            pace: settings.pace,
+            scenario: settings.scenario.clone().map(Play::new),
         };
         for report in spontaneous(reflector) {
             if let Some(Cadence::EveryMs(interval)) = report.cadence() {
@@ -135,20 +160,95 @@ impl<'m> Robot<'m> {
                 return self.refuse(frame.id, ResultRole::Invalid, &error.to_string());
             }
         };
+        let request = json(&text).unwrap_or(Value::Null);
+        let scenario = self.scenario.as_mut();
+        if let Some(action) = scenario.and_then(|play| play.request(&operation.name, &request)) {
+            return self.act(frame.id, operation, &request, &action);
+        }
         if let Some(objection) = self.memory.objection(model, operation) {
             return self.refuse(frame.id, ResultRole::Protocol, &objection);
         }
-        let request = crate::arguments::json(&text).unwrap_or(Value::Null);
         self.memory.accept(model, operation, &request);
         let success = facts::result(model, ResultRole::Success)?;
         let mut message = (self.reflector.samples()).response(Some(operation), success);
         (self.memory).fill(model, operation, Direction::Response, &mut message);
         self.begin(operation, &request, &message);
         let bytes = self.seal(frame.id.answer(), message)?;
-        Some(Answer {
-            bytes,
-            accepted: Some(operation),
-        })
+        Some(Answer::new(bytes, Some(operation)))
+    }
+
+    /// Answers as a scenario demands. Preconditions do not count.
+    fn act(
+        &mut self,
+        id: FrameId,
+        command: &'m Operation,
+        request: &Value,
+        action: &Action,
+    ) -> Option<Answer<'m>> {
+        let model = self.reflector.model();
+        let mut answer = match action.refuse {
+            Some(code) => {
+                let result = model.results.iter().find(|result| result.code == code)?;
+                let message = self.reflector.samples().response(None, result);
+                Answer::new(self.seal(id.answer(), message)?, None)
+            }
+            None => {
+                self.memory.accept(model, command, request);
+                let success = facts::result(model, ResultRole::Success)?;
+                let mut message = (self.reflector.samples()).response(Some(command), success);
+                (self.memory).fill(model, command, Direction::Response, &mut message);
+                if let Some(values) = &action.answer {
+                    merge(&mut message, values);
+                }
+                if action.reports.is_none() {
+                    self.begin(command, request, &message);
+                }
+                Answer::new(self.seal(id.answer(), message)?, Some(command))
+            }
+        };
+        self.plan_scripted(action);
+        if action.bad_digest {
+            let digest = HeaderRole::Digest;
+            self.reflector.overwrite(&mut answer.bytes, digest, 0xBAD);
+        }
+        if action.silent {
+            answer.bytes.clear();
+        }
+        answer.delay = action.delay;
+        answer.disconnect = action.disconnect;
+        Some(answer)
+    }
+
+    fn plan_scripted(&mut self, action: &Action) {
+        let mut due = Instant::now() + action.delay;
+        for scripted in action.reports.iter().flatten() {
+            let Some(report) = self.reflector.model().operation(&scripted.report) else {
+                continue;
+            };
+            due += scripted.after;
+            let mut message = self.sample(report);
+            merge(&mut message, &scripted.body);
+            if self.plan.len() < MOST_PLANNED {
+                self.plan.push(Planned {
+                    due,
+                    report,
+                    message,
+                    interval: None,
+                });
+            }
+        }
+    }
+
+    /// Notes the acknowledgement of a report.
+    pub(super) fn acknowledged(&mut self, frame: &Frame<'_>) {
+        if let (Some(play), Some(report)) = (&mut self.scenario, frame.operation) {
+            play.acknowledged(&report.name);
+        }
+    }
+
+    /// Returns the state of the scenario, or `None` without one.
+    pub(super) fn verdict(&self) -> Option<Verdict> {
+        self.scenario.as_ref().map(Play::verdict)
     }
 
     /// Plans the reports that a command sets off. They replace those of a process that still runs.
@@ -193,10 +293,7 @@ impl<'m> Robot<'m> {
         if !reason.is_empty() {
             self.set_text(&mut message, result, reason);
         }
-        Some(Answer {
-            bytes: self.seal(id.answer(), message)?,
-            accepted: None,
-        })
+        Some(Answer::new(self.seal(id.answer(), message)?, None))
     }
 
     /// Adds the reason of a refusal to its text.

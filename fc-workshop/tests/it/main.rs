@@ -1,0 +1,14 @@
+//! The integration tests, as one program: a program per file would link the crate each time.
+
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "tests"
+)]
+
+mod arguments;
+mod mock;
+mod scenarios;
+mod support;
