@@ -1,0 +1,13 @@
+//! The integration tests, as one program: a program per file would link the crate each time.
+
+#![allow(
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "tests"
+)]
+
+mod decode;
+mod support;
