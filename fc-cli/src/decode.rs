@@ -32,11 +32,6 @@ pub struct Options {
     )]
     input: Option<Input>,
     #[arg(
-        long,
-        help = both("每帧输出一行 JSON", "Print one line of JSON per frame")
-    )]
-    json: bool,
-    #[arg(
         long = "code",
         value_name = "CODE",
         value_parser = code,
@@ -73,6 +68,21 @@ pub struct Options {
         help = both("只显示一部分", "Show a part only")
     )]
     only: Option<Only>,
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        help = both("输出格式", "Output format")
+    )]
+    format: Shown,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Shown {
+    #[value(help = both("每帧一棵树", "A tree per frame"))]
+    Text,
+    #[value(help = both("每帧一行 JSON", "One line of JSON per frame"))]
+    Json,
 }
 
 /// The format of the input.
@@ -126,7 +136,7 @@ pub fn help() -> Help {
                     both("解析粘贴的十六进制", "Decode hexadecimal text"),
                 ),
                 ("fcproto decode --only errors dump.bin", ""),
-                ("fcproto decode --json capture.pcapng | jq .body", ""),
+                ("fcproto decode --format json capture.pcapng | jq .body", ""),
                 (
                     "sudo tcpdump -U -w - tcp | fcproto decode",
                     both("边抓边看", "Watch live traffic"),
@@ -137,7 +147,7 @@ pub fn help() -> Help {
             "规范有错误，或显示的帧有错误",
             "Errors in the spec, or in the shown frames",
         ),
-        speaks: both("`--json` 以外的输出", "Everything except `--json`"),
+        speaks: both("`text` 格式", "`text`"),
     }
 }
 
@@ -285,7 +295,7 @@ impl<'m> Printer<'_, 'm> {
             if record.error.is_some() {
                 self.status = Status::Faulty;
             }
-            let mut text = if self.options.json {
+            let mut text = if self.options.format == Shown::Json {
                 decode::json(record)
             } else {
                 decode::text(record, self.model, lang())

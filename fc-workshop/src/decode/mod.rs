@@ -18,7 +18,7 @@ pub use input::{Format, InputError};
 pub use json::line as json;
 pub use pair::Request;
 pub use source::{DecodeError, Source, read};
-pub use text::tree as text;
+pub use text::{hex, tree as text};
 
 use crate::capture::Flow;
 use fc_reflect::{

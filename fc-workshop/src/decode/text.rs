@@ -275,7 +275,8 @@ fn content(value: &HeaderValue<'_>) -> String {
 }
 
 /// Returns bytes as pairs of digits, with a space between them.
-pub(super) fn hex(bytes: &[u8]) -> String {
+#[must_use]
+pub fn hex(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len().saturating_mul(3));
     for byte in bytes {
         if !out.is_empty() {
