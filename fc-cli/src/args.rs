@@ -7,8 +7,9 @@ use crate::help::{Help, PageOptions, Part, global};
 use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
-    call, changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp,
-    mock, new, package, places, questions, release, retire, schema, settle, shell,
+    call, changelog, check, codes, decode, diff, encode, explain, fmt, generate, git, init,
+    inspect, lint, lsp, mock, new, package, places, questions, release, retire, schema, settle,
+    shell,
 };
 
 /// Styles of help and usage errors.
@@ -77,6 +78,8 @@ pub enum Command {
     Settle(Box<settle::Options>),
     Call(call::Options),
     Mock(mock::Options),
+    Decode(decode::Options),
+    Encode(encode::Options),
     Git(git::Options),
     #[command(hide = true)]
     GitDiff(git::diff::Options),

@@ -7,7 +7,9 @@ mod call;
 mod changelog;
 mod check;
 mod codes;
+mod decode;
 mod diff;
+mod encode;
 mod explain;
 mod fmt;
 mod generate;
@@ -84,6 +86,8 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Changelog(options) => changelog::run(&args.place, options),
         Command::Release(options) => release::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
+        Command::Decode(options) => decode::run(&args.place, options),
+        Command::Encode(options) => encode::run(&args.place, options),
         Command::Retire(options) => retire::run(&args.place, options),
         Command::Call(options) => call::run(&args.place, options),
         Command::Mock(options) => mock::run(&args.place, options),

@@ -58,10 +58,17 @@ impl<'m> Frame<'m> {
         self.header.iter().find(has_role)
     }
 
-    /// Returns `true` if the data is raw bytes instead of JSON.
+    /// Returns `true` if the frame belongs to a stream. Its data can be raw bytes or JSON.
     #[must_use]
     pub fn is_stream(&self) -> bool {
         self.kind.role == KindRole::Stream
+    }
+
+    /// Returns `true` if the data is JSON. Only streams whose keys the spec does not describe have other data.
+    #[must_use]
+    pub fn is_json(&self) -> bool {
+        let body = self.operation.and_then(|it| it.body(self.id.direction));
+        !self.is_stream() || body.is_some()
     }
 }
 
@@ -119,10 +126,8 @@ pub(crate) fn read<'m>(
         zero_length,
     } = raw.check(id, limits)?;
     let value = |field: &'m HeaderField| HeaderValue {
-        field,
-        span: field.place(),
-        content: raw.content(field),
         lenient: zero_length && field.role == Some(HeaderRole::PlainLength),
+        ..raw.value(field)
     };
     let operation = plan.with_code(id.kind, id.code);
     Ok(Frame {
@@ -195,6 +200,14 @@ pub(crate) fn announced(
     Ok(Some((length, direction)))
 }
 
+/// Returns the header fields whose bytes are all present, in order.
+pub(crate) fn header<'m>(plan: &FramePlan<'m>, bytes: &[u8]) -> Vec<HeaderValue<'m>> {
+    let raw = Raw { plan, bytes };
+    let fields = plan.layout.header.iter();
+    let fields = fields.take_while(|field| field.place().end <= bytes.len());
+    fields.map(|field| raw.value(field)).collect()
+}
+
 /// The bytes of a header.
 struct Raw<'p, 'm, 'b> {
     plan: &'p FramePlan<'m>,
@@ -225,6 +238,16 @@ impl<'m> Raw<'_, 'm, '_> {
         } else {
             bytes.rev().fold(0, push)
         })
+    }
+
+    /// Returns a field as if no quirk accepted its value.
+    fn value(&self, field: &'m HeaderField) -> HeaderValue<'m> {
+        HeaderValue {
+            field,
+            span: field.place(),
+            content: self.content(field),
+            lenient: false,
+        }
     }
 
     fn content(&self, field: &HeaderField) -> HeaderContent {

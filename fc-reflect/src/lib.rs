@@ -103,7 +103,7 @@ impl<'m> Reflector<'m> {
     /// The error in the frame, the envelope or the body.
     pub fn decode(&self, bytes: &[u8]) -> Result<Decoded<'m>, Error> {
         let frame = self.frame(bytes)?;
-        if is_bytes(&frame) {
+        if !frame.is_json() {
             return Ok(Decoded {
                 frame,
                 message: None,
@@ -140,6 +140,13 @@ impl<'m> Reflector<'m> {
         Ok(announced.map(|(length, _)| length))
     }
 
+    /// Returns the header fields at the start of `bytes`, without any check. It ends before the first field whose bytes
+    /// are missing. Tools show the header of an invalid frame with it.
+    #[must_use]
+    pub fn header(&self, bytes: &[u8]) -> Vec<HeaderValue<'m>> {
+        frame::header(&self.plan.frame, bytes)
+    }
+
     /// Reads the text of a message of one side of an operation. Empty text counts as `{}`. Without an operation, all
     /// keys outside the envelope are unknown. A stream has no envelope.
     ///
@@ -161,6 +168,13 @@ impl<'m> Reflector<'m> {
             self.plan.envelope(is_response)
         };
         read::message(&self.plan, envelope, own, text, &self.limits)
+    }
+
+    /// Returns the operation of a frame, or `None` if the spec has none with this kind and code.
+    #[must_use]
+    pub fn operation(&self, id: FrameId) -> Option<&'m Operation> {
+        let plan = self.plan.with_code(id.kind, id.code)?;
+        Some(plan.operation)
     }
 
     /// Returns the header fields for a message of an operation, or `None` while the operation has no code. `id` is cut
@@ -185,8 +199,7 @@ impl<'m> Reflector<'m> {
     /// # Errors
     /// The error that a receiver would report for the body, or `frame_too_long`.
     pub fn encode(&self, id: FrameId, data: &[u8], packing: Packing) -> Result<Vec<u8>, Error> {
-        let operation = self.plan.with_code(id.kind, id.code);
-        let operation = operation.map(|plan| plan.operation);
+        let operation = self.operation(id);
         let is_json = operation.is_some_and(|operation| operation.body(id.direction).is_some());
         if self.plan.frame.is_stream(id.kind) && !is_json {
             return Ok(self.seal(id, data, packing)?);
@@ -284,12 +297,6 @@ impl<'m> Reflector<'m> {
         };
         Some(self.seal(request.id.answer(), &data, packing))
     }
-}
-
-/// Returns `true` for a stream whose bytes the model does not describe.
-fn is_bytes(frame: &Frame<'_>) -> bool {
-    let body = frame.operation.and_then(|it| it.body(frame.id.direction));
-    frame.is_stream() && body.is_none()
 }
 
 /// A frame and its message.

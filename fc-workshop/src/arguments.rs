@@ -10,6 +10,9 @@ use std::fmt;
 /// The largest index of a list in a key.
 const MOST_ITEMS: usize = 4096;
 
+/// The least similarity of a suggested key, from 0 to 1.
+const SIMILAR: f64 = 0.8;
+
 /// An argument that does not fit the spec.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ArgumentError(Text);
@@ -44,7 +47,7 @@ impl<'m> Arguments<'m> {
     }
 
     /// Returns the object with these arguments. A key is a wire key or the name of a field; dots lead into objects, and
-    /// numbers into lists.
+    /// indexes into lists, such as `list[0]` or `list.0`.
     ///
     /// # Errors
     /// [`ArgumentError`] for an unknown key, or a value of another type.
@@ -62,7 +65,9 @@ impl<'m> Arguments<'m> {
                     "expected `key=value`, found `{argument}`"
                 )));
             };
-            let steps: Vec<&str> = key.split('.').collect();
+            // `list[0]` is `list.0`.
+            let path = key.replace('[', ".").replace(']', "");
+            let steps: Vec<&str> = path.split('.').collect();
             self.set_key(shape, &mut object, &steps, key, text)?;
         }
         Ok(object)
@@ -252,9 +257,19 @@ fn unknown_key(shape: &StructType, step: &str, key: &str) -> ArgumentError {
             "`{key}`: the spec has no keys here; send unknown keys with --json"
         ));
     }
+    let similar = shape.fields.iter().map(|field| &field.wire);
+    let similar = similar.max_by(|one, two| {
+        let one = strsim::jaro_winkler(one, step);
+        one.total_cmp(&strsim::jaro_winkler(two, step))
+    });
+    let similar = similar.filter(|wire| strsim::jaro_winkler(wire, step) > SIMILAR);
+    let similar = similar.map_or_else(Text::default, |wire| {
+        text!("是否要写 `{wire}`？", "did you mean `{wire}`? ")
+    });
     ArgumentError(text!(
-        "`{key}`：没有键 `{step}`；可用的键：{known}",
-        "`{key}`: there is no key `{step}`; the keys are {known}",
+        "`{key}`：没有键 `{step}`；{similar}可用的键：{known}",
+        "`{key}`: there is no key `{step}`; {similar}the keys are {known}",
+        similar = similar,
         known = known
     ))
 }

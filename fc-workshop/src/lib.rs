@@ -5,8 +5,11 @@
 
 pub mod answer;
 pub mod arguments;
+pub mod capture;
 pub mod client;
 pub mod connection;
+pub mod decode;
+mod dump;
 pub mod facts;
 pub mod mock;
 pub mod paths;

@@ -269,7 +269,8 @@ fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Req
     })
 }
 
-fn read_json(text: &str) -> Result<Value, Failure> {
+/// Reads the JSON object of an option, or the file that it names.
+pub fn read_json(text: &str) -> Result<Value, Failure> {
     let text = match text.strip_prefix('@') {
         Some(file) => input::text(&PathBuf::from(file))?,
         None => text.to_owned(),

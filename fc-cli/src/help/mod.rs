@@ -13,8 +13,9 @@ use clap::{Arg, ArgAction, Command, CommandFactory as _};
 use crate::args::{self, Args};
 use crate::lang::both;
 use crate::{
-    call, changelog, check, codes, diff, explain, fmt, generate, git, init, inspect, lint, lsp,
-    mock, new, package, places, questions, release, retire, schema, settle, shell,
+    call, changelog, check, codes, decode, diff, encode, explain, fmt, generate, git, init,
+    inspect, lint, lsp, mock, new, package, places, questions, release, retire, schema, settle,
+    shell,
 };
 
 pub use page::{Options as PageOptions, run as page};
@@ -68,6 +69,8 @@ fn of(path: &[&str]) -> Option<Help> {
         ["settle"] => settle::help(),
         ["call"] => call::help(),
         ["mock"] => mock::help(),
+        ["decode"] => decode::help(),
+        ["encode"] => encode::help(),
         ["git"] => git::help(),
         ["git", "setup"] => git::setup::help(),
         ["git", "check"] => git::check::help(),

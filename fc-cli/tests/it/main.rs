@@ -15,6 +15,7 @@ mod audience;
 mod call;
 mod check;
 mod codes;
+mod decode;
 mod diff;
 mod edits;
 mod explain;

@@ -221,3 +221,21 @@ fn every_limit_is_held() {
             .is_ok()
     );
 }
+
+#[test]
+fn header_and_length_of_an_invalid_frame_can_be_read() {
+    let model = specs::small();
+    let reflector = Reflector::new(&model);
+    let mut frame = encode(&reflector, &model, "unknown_body", "{}");
+    // Another kind.
+    frame[38] = 0x77;
+    let error = reflector.frame(&frame).expect_err("invalid");
+    assert_eq!(error.fault, FrameFault::UnknownKind);
+    assert_eq!(reflector.length(&frame), Ok(Some(frame.len())));
+    let header = reflector.header(&frame);
+    assert_eq!(header.len(), 10);
+    assert_eq!(header[7].content, HeaderContent::Int(0x77));
+    assert_eq!(header[7].span, 38..39);
+    // It ends before a field without all of its bytes.
+    assert_eq!(reflector.header(&frame[..38]).len(), 7);
+}

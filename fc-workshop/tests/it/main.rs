@@ -5,10 +5,12 @@
     clippy::indexing_slicing,
     clippy::panic,
     clippy::unwrap_used,
+    missing_docs,
     reason = "tests"
 )]
 
 mod arguments;
+mod decode;
 mod mock;
 mod scenarios;
 mod support;

@@ -1,0 +1,263 @@
+//! Puts the segments of each flow in order.
+
+use super::packet::Segment;
+use super::{Event, Flow, Receiver};
+use std::collections::{HashMap, VecDeque};
+use std::io;
+use std::time::Duration;
+
+/// Flows that are followed at the same time.
+const FLOWS: usize = 2048;
+
+/// Bytes of a flow that wait for earlier ones. A longer wait means that the earlier ones are missing.
+const WAITING: usize = 1 << 20;
+
+/// Segments of a flow that wait for earlier ones.
+const SEGMENTS: usize = 1024;
+
+/// Waiting bytes of all flows.
+const ALL_WAITING: usize = 32 << 20;
+
+/// The flows of a capture.
+#[derive(Debug, Default)]
+pub(super) struct Flows {
+    states: HashMap<Flow, State>,
+    /// The number of waiting bytes of all flows.
+    waiting: usize,
+    /// The number of segments so far, as a clock.
+    now: u64,
+}
+
+#[derive(Debug)]
+struct State {
+    /// The sequence number of the next byte.
+    next: u32,
+    /// Later segments, in the order of their sequence numbers.
+    later: VecDeque<Later>,
+    waiting: usize,
+    /// The sequence number of the end of the flow.
+    end: Option<u32>,
+    is_closed: bool,
+    used: u64,
+}
+
+#[derive(Debug)]
+struct Later {
+    sequence: u32,
+    time: Duration,
+    bytes: Vec<u8>,
+}
+
+impl State {
+    fn new(next: u32) -> Self {
+        Self {
+            next,
+            later: VecDeque::new(),
+            waiting: 0,
+            end: None,
+            is_closed: false,
+            used: 0,
+        }
+    }
+
+    /// Takes the bytes at a sequence number that follow those before, without those that came already. Returns
+    /// `None` if earlier ones are missing.
+    fn fresh<'b>(&mut self, sequence: u32, bytes: &'b [u8]) -> Option<&'b [u8]> {
+        let ahead = distance(self.next, sequence);
+        if ahead > 0 {
+            return None;
+        }
+        let old = usize::try_from(ahead.unsigned_abs()).unwrap_or(usize::MAX);
+        let fresh = bytes.get(old..).unwrap_or_default();
+        self.next = self.next.wrapping_add(count(fresh));
+        Some(fresh)
+    }
+}
+
+/// Returns the sequence numbers that bytes take.
+fn count(bytes: &[u8]) -> u32 {
+    // A packet has at most 65,535 bytes.
+    u32::try_from(bytes.len()).unwrap_or(u32::MAX)
+}
+
+/// Returns the distance from one sequence number to another, which can be smaller.
+fn distance(from: u32, to: u32) -> i32 {
+    to.wrapping_sub(from).cast_signed()
+}
+
+impl Flows {
+    /// Adds a segment, and passes on the bytes that are in order.
+    pub(super) fn add(
+        &mut self,
+        segment: &Segment<'_>,
+        time: Duration,
+        receiver: &mut Receiver<'_>,
+    ) -> io::Result<()> {
+        self.now += 1;
+        if let Some(acknowledged) = segment.acknowledged {
+            self.acknowledge(segment.flow.reversed(), acknowledged, receiver)?;
+        }
+        let first = segment.sequence.wrapping_add(u32::from(segment.syn));
+        if segment.syn {
+            // A repeated SYN has the number of the first one.
+            let is_new = |state: &State| state.is_closed || state.next != first;
+            if self.states.get(&segment.flow).is_some_and(is_new) {
+                self.close(segment.flow, receiver)?;
+            }
+        }
+        let is_known = self.states.contains_key(&segment.flow);
+        if !is_known && segment.payload.is_empty() && !segment.syn {
+            return Ok(());
+        }
+        if !is_known {
+            self.make_room(receiver)?;
+        }
+        let now = self.now;
+        let state = self.states.entry(segment.flow);
+        let state = state.or_insert_with(|| State::new(first));
+        state.used = now;
+        if segment.fin {
+            state.end = Some(first.wrapping_add(count(segment.payload)));
+        }
+        match state.fresh(first, segment.payload) {
+            Some([]) => {}
+            Some(bytes) => receiver(segment.flow, Event::Bytes(time, bytes))?,
+            None => self.keep(segment.flow, first, time, segment.payload),
+        }
+        self.deliver(segment.flow, receiver)?;
+        if segment.rst {
+            self.close(segment.flow, receiver)?;
+            self.close(segment.flow.reversed(), receiver)?;
+        }
+        Ok(())
+    }
+
+    /// Passes on all waiting bytes and ends all flows.
+    pub(super) fn finish(&mut self, receiver: &mut Receiver<'_>) -> io::Result<()> {
+        let mut flows: Vec<_> = self.states.keys().copied().collect();
+        flows.sort_unstable();
+        for flow in flows {
+            self.close(flow, receiver)?;
+        }
+        Ok(())
+    }
+
+    /// Keeps the bytes of a later segment.
+    fn keep(&mut self, flow: Flow, sequence: u32, time: Duration, bytes: &[u8]) {
+        let Some(state) = self.states.get_mut(&flow) else {
+            return;
+        };
+        let next = state.next;
+        let place = state
+            .later
+            .partition_point(|later| distance(next, later.sequence) <= distance(next, sequence));
+        let later = Later {
+            sequence,
+            time,
+            bytes: bytes.to_vec(),
+        };
+        state.waiting += bytes.len();
+        self.waiting += bytes.len();
+        state.later.insert(place, later);
+    }
+
+    /// Passes on waiting bytes that are in order now, and gives up waiting beyond the limits.
+    fn deliver(&mut self, flow: Flow, receiver: &mut Receiver<'_>) -> io::Result<()> {
+        loop {
+            let Some(state) = self.states.get_mut(&flow) else {
+                return Ok(());
+            };
+            let Some(first) = state.later.front() else {
+                break;
+            };
+            let ahead = distance(state.next, first.sequence);
+            if ahead > 0 {
+                let is_over = state.waiting > WAITING
+                    || state.later.len() > SEGMENTS
+                    || self.waiting > ALL_WAITING;
+                if !is_over {
+                    break;
+                }
+                state.next = first.sequence;
+                receiver(flow, Event::Missing(u64::from(ahead.unsigned_abs())))?;
+                continue;
+            }
+            self.pass(flow, receiver)?;
+        }
+        let Some(state) = self.states.get_mut(&flow) else {
+            return Ok(());
+        };
+        if state.later.is_empty() && state.end == Some(state.next) && !state.is_closed {
+            state.is_closed = true;
+            receiver(flow, Event::End)?;
+        }
+        Ok(())
+    }
+
+    /// Passes on the first waiting segment, which is in order.
+    fn pass(&mut self, flow: Flow, receiver: &mut Receiver<'_>) -> io::Result<()> {
+        let Some(state) = self.states.get_mut(&flow) else {
+            return Ok(());
+        };
+        let Some(later) = state.later.pop_front() else {
+            return Ok(());
+        };
+        state.waiting -= later.bytes.len();
+        self.waiting -= later.bytes.len();
+        match state.fresh(later.sequence, &later.bytes) {
+            None | Some([]) => Ok(()),
+            Some(bytes) => receiver(flow, Event::Bytes(later.time, bytes)),
+        }
+    }
+
+    /// Gives up waiting for bytes that the peer has acknowledged: the capture lacks them.
+    fn acknowledge(
+        &mut self,
+        flow: Flow,
+        acknowledged: u32,
+        receiver: &mut Receiver<'_>,
+    ) -> io::Result<()> {
+        while let Some(state) = self.states.get_mut(&flow)
+            && let Some(first) = state.later.front()
+            && distance(first.sequence, acknowledged) > 0
+        {
+            let ahead = distance(state.next, first.sequence);
+            if ahead > 0 {
+                state.next = first.sequence;
+                receiver(flow, Event::Missing(u64::from(ahead.unsigned_abs())))?;
+            }
+            self.pass(flow, receiver)?;
+        }
+        Ok(())
+    }
+
+    /// Passes on all waiting bytes of a flow and ends it.
+    fn close(&mut self, flow: Flow, receiver: &mut Receiver<'_>) -> io::Result<()> {
+        while let Some(state) = self.states.get_mut(&flow)
+            && let Some(first) = state.later.front()
+        {
+            let ahead = distance(state.next, first.sequence);
+            if ahead > 0 {
+                state.next = first.sequence;
+                receiver(flow, Event::Missing(u64::from(ahead.unsigned_abs())))?;
+            }
+            self.pass(flow, receiver)?;
+        }
+        match self.states.remove(&flow) {
+            Some(state) if !state.is_closed => receiver(flow, Event::End),
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends the flow that was unused for the longest time if there are too many.
+    fn make_room(&mut self, receiver: &mut Receiver<'_>) -> io::Result<()> {
+        if self.states.len() < FLOWS {
+            return Ok(());
+        }
+        let oldest = self.states.iter().min_by_key(|(_, state)| state.used);
+        match oldest.map(|(flow, _)| *flow) {
+            Some(flow) => self.close(flow, receiver),
+            None => Ok(()),
+        }
+    }
+}

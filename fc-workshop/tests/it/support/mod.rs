@@ -1,0 +1,47 @@
+//! Models and bytes for the tests.
+
+use fc_spec::diagnostic::{Faults, Format, render};
+use fc_spec::load::load;
+use fc_spec::model::{Lang, Model};
+use fc_spec::source::Sources;
+use fc_spec::syntax::read_dir;
+use std::path::{Path, PathBuf};
+
+/// The root of the repository.
+pub fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap().to_owned()
+}
+
+/// The model of the spec in a directory.
+pub fn model_in(root: &Path) -> Model {
+    let mut faults = Faults::new();
+    let sources = read_dir(root, Path::new("spec"), &mut faults);
+    loaded(&sources, faults)
+}
+
+/// A small protocol with another byte order, header and envelope than that of the repository.
+pub fn small() -> Model {
+    let files = [
+        (
+            "spec/protocol.yaml",
+            include_str!("../../../../fc-reflect/tests/small/protocol.yaml"),
+        ),
+        (
+            "spec/commands/lamp.yaml",
+            include_str!("../../../../fc-reflect/tests/small/commands/lamp.yaml"),
+        ),
+    ];
+    let files = files.map(|(path, text)| (path.to_owned(), text.to_owned()));
+    loaded(&Sources::from_texts(files), Faults::new())
+}
+
+fn loaded(sources: &Sources, mut faults: Faults) -> Model {
+    let model = load(sources, &mut faults).model();
+    model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text, Lang::En)))
+}
+
+pub fn unhex(text: &str) -> Vec<u8> {
+    let digit = |at: usize| u8::from_str_radix(&text[at..at + 2], 16).unwrap();
+    (0..text.len()).step_by(2).map(digit).collect()
+}
