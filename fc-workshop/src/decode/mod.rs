@@ -19,6 +19,7 @@ pub use json::line as json;
 pub use pair::Request;
 pub use source::{DecodeError, Source, read};
 pub use text::tree as text;
+pub(crate) use text::{clipped, clock, scalar};
 
 use crate::capture::Flow;
 use fc_reflect::{

@@ -10,4 +10,5 @@
 )]
 
 mod decode;
+mod drift;
 mod support;

@@ -36,7 +36,8 @@ pub fn small() -> Model {
     loaded(&Sources::from_texts(files), Faults::new())
 }
 
-fn loaded(sources: &Sources, mut faults: Faults) -> Model {
+/// The model of a spec without errors.
+pub fn loaded(sources: &Sources, mut faults: Faults) -> Model {
     let model = load(sources, &mut faults).model();
     model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text, Lang::En)))
 }
