@@ -7,8 +7,8 @@ use crate::help::{Help, PageOptions, Part, global};
 use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
-    call, changelog, check, codes, decode, diff, explain, fmt, generate, git, init, inspect, lint,
-    lsp, mock, new, package, places, questions, release, retire, schema, settle, shell,
+    call, changelog, check, codes, decode, diff, drift, explain, fmt, generate, git, init, inspect,
+    lint, lsp, mock, new, package, places, questions, release, retire, schema, settle, shell,
 };
 
 /// Styles of help and usage errors.
@@ -74,6 +74,7 @@ pub enum Command {
     Where(places::Options),
     Codes(codes::Options),
     Decode(decode::Options),
+    Drift(drift::Options),
     Questions(questions::Options),
     Settle(Box<settle::Options>),
     Call(call::Options),

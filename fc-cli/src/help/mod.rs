@@ -13,8 +13,8 @@ use clap::{Arg, ArgAction, Command, CommandFactory as _};
 use crate::args::{self, Args};
 use crate::lang::both;
 use crate::{
-    call, changelog, check, codes, decode, diff, explain, fmt, generate, git, init, inspect, lint,
-    lsp, mock, new, package, places, questions, release, retire, schema, settle, shell,
+    call, changelog, check, codes, decode, diff, drift, explain, fmt, generate, git, init, inspect,
+    lint, lsp, mock, new, package, places, questions, release, retire, schema, settle, shell,
 };
 
 pub use page::{Options as PageOptions, run as page};
@@ -65,6 +65,7 @@ fn of(path: &[&str]) -> Option<Help> {
         ["where"] => places::help(),
         ["codes"] => codes::help(),
         ["decode"] => decode::help(),
+        ["drift"] => drift::help(),
         ["questions"] => questions::help(),
         ["settle"] => settle::help(),
         ["call"] => call::help(),

@@ -16,6 +16,7 @@ mod call;
 mod check;
 mod codes;
 mod diff;
+mod drift;
 mod edits;
 mod explain;
 mod fmt;

@@ -1,7 +1,8 @@
 //! Requests without an answer.
 
 use super::{DeviationKind, Found, Moment, Place, place};
-use crate::decode::{Flow, Record};
+use crate::capture::Flow;
+use crate::decode::Record;
 use fc_reflect::FrameId;
 use fc_spec::model::{Direction, Exchange, Kind, Model};
 use std::collections::{HashMap, HashSet, VecDeque};

@@ -15,7 +15,8 @@ pub use json::line as json;
 pub use suggest::suggest;
 pub use text::deviation as text;
 
-use crate::decode::{Flow, Record, RecordError};
+use crate::capture::Flow;
+use crate::decode::{Record, RecordError};
 use exchange::Exchanges;
 use fc_reflect::{BodyErrorKind, FrameFault};
 use fc_spec::model::{Direction, Model, Operation};
@@ -117,7 +118,7 @@ pub struct Drift<'m> {
     found: Found<'m>,
     exchanges: Exchanges<'m>,
     processes: Processes<'m>,
-    frames: u64,
+    frames: usize,
 }
 
 impl<'m> Drift<'m> {
@@ -135,7 +136,7 @@ impl<'m> Drift<'m> {
 
     /// Compares a record with the spec. Records of a connection must come in their order.
     pub fn observe(&mut self, record: &Record<'m>) {
-        self.frames += u64::from(record.frame.is_some());
+        self.frames += usize::from(record.frame.is_some());
         message::compare(self.model, record, &mut self.found);
         let repeated = self.exchanges.follow(self.model, record, &mut self.found);
         if !repeated && record.error.is_none() {
@@ -159,7 +160,7 @@ impl<'m> Drift<'m> {
 #[derive(Clone, Debug)]
 pub struct Report<'m> {
     /// The valid frames.
-    pub frames: u64,
+    pub frames: usize,
     /// The deviations in the order of their first frames.
     pub deviations: Vec<Deviation<'m>>,
     /// Deviations at further places, which are not in the list because it is full.

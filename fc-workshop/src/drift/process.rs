@@ -1,7 +1,8 @@
 //! The order of states and the cadence of reports.
 
 use super::{DeviationKind, Found, Moment, Place, place};
-use crate::decode::{Flow, Record};
+use crate::capture::Flow;
+use crate::decode::Record;
 use fc_reflect::{About, Node, Value};
 use fc_spec::model::{
     Cadence, EnumType, EnumValue, Exchange, Kind, Model, Operation, StateOrder, Step,

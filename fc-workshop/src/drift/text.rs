@@ -4,63 +4,68 @@ use super::{Deviation, DeviationKind};
 use crate::decode::{clipped, clock, error_text};
 use fc_spec::model::{Direction, Lang};
 
-/// Returns a deviation: a line with its kind, place and number, and a line with the first frame.
+/// Returns a deviation in three lines: its place in the protocol, its kind and content, and its number and first frame.
 #[must_use]
 pub fn deviation(deviation: &Deviation<'_>, lang: Lang) -> String {
     let place = &deviation.place;
-    let name = place.kind.name();
-    let mut title = format!("{name}: {}", meaning(place.kind, lang));
+    let mut title = Vec::new();
     if let Some((_, code)) = place.code {
-        title += &format!("  0x{code:04X}");
+        title.push(format!("0x{code:04X}"));
     }
     if let Some(operation) = deviation.operation {
-        title += &format!(" {}", operation.name);
+        title.push(operation.name.clone());
     }
-    title += match place.direction {
-        Some(Direction::Request) => lang.pick(" 请求", " request"),
-        Some(Direction::Response) => lang.pick(" 响应", " response"),
-        None => "",
-    };
+    title.extend(place.direction.map(|direction| {
+        let name = match direction {
+            Direction::Request => lang.pick("请求", "request"),
+            Direction::Response => lang.pick("响应", "response"),
+        };
+        name.to_owned()
+    }));
+    if title.is_empty() {
+        title.push(
+            lang.pick("无法识别的字节", "bytes that are no frame")
+                .to_owned(),
+        );
+    }
     for part in [&place.path, &place.value] {
         if !part.is_empty() {
-            title += &format!("  {part}");
+            title.push(format!("· {part}"));
         }
     }
-    let mut first = Vec::new();
-    first.push(match lang {
-        Lang::Zh => format!("{} 次", deviation.count),
-        Lang::En if deviation.count == 1 => "once".to_owned(),
-        Lang::En => format!("{} times", deviation.count),
-    });
-    let time = deviation.time.map(clock).unwrap_or_default();
-    let flow = deviation
-        .flow
-        .map(|flow| format!("{flow} "))
-        .unwrap_or_default();
-    let offset = deviation.offset;
-    first.push(match lang {
-        Lang::Zh => format!("首次：{flow}{time} 位置 {offset}"),
-        Lang::En => format!("first: {flow}{time} at {offset}"),
-    });
+    let name = place.kind.name();
+    let mut content = vec![match lang {
+        Lang::Zh => format!("{name}：{}", meaning(place.kind, lang)),
+        Lang::En => format!("{name}: {}", meaning(place.kind, lang)),
+    }];
     let example = clipped(&deviation.example);
     if !example.is_empty() && example != place.value {
-        first.push(match lang {
-            Lang::Zh => format!("例如：{example}"),
-            Lang::En => format!("found: {example}"),
+        content.push(match lang {
+            Lang::Zh => format!("收到 {example}"),
+            Lang::En => format!("found {example}"),
         });
     }
     if !deviation.expected.is_empty() {
-        first.push(match lang {
-            Lang::Zh => format!("规范要求：{}", deviation.expected),
-            Lang::En => format!("expected: {}", deviation.expected),
+        content.push(match lang {
+            Lang::Zh => format!("规范：{}", deviation.expected),
+            Lang::En => format!("spec: {}", deviation.expected),
         });
     }
-    let mut text = format!("{title}\n  {}", first.join(" · "));
-    if let Some(operation) = deviation.operation {
-        let at = &operation.location;
-        text += &format!("\n  {}:{}", at.file, at.line);
+    let mut first = match (lang, deviation.count) {
+        (Lang::Zh, count) => format!("{count} 次，首次在位置 {}", deviation.offset),
+        (Lang::En, 1) => format!("once, at {}", deviation.offset),
+        (Lang::En, count) => format!("{count} times, first at {}", deviation.offset),
+    };
+    if let Some(flow) = deviation.flow {
+        first += &format!(" · {flow}");
     }
-    text
+    if let Some(time) = deviation.time {
+        first += &format!(" · {}", clock(time));
+    }
+    if let Some(operation) = deviation.operation {
+        first += &format!(" · {}:{}", operation.location.file, operation.location.line);
+    }
+    format!("{}\n  {}\n  {first}", title.join(" "), content.join(" · "))
 }
 
 /// Returns the meaning of a kind in a few words.
