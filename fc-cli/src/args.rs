@@ -7,7 +7,7 @@ use crate::help::{Help, PageOptions, Part, global};
 use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
-    call, changelog, check, codes, decode, diff, encode, explain, fmt, generate, git, init,
+    call, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate, git, init,
     inspect, lint, lsp, mock, new, package, places, questions, release, retire, schema, settle,
     shell,
 };
@@ -80,6 +80,7 @@ pub enum Command {
     Mock(mock::Options),
     Decode(decode::Options),
     Encode(encode::Options),
+    Drift(drift::Options),
     Git(git::Options),
     #[command(hide = true)]
     GitDiff(git::diff::Options),

@@ -1,36 +1,25 @@
 //! `fcproto decode`.
 
-use std::fs::File;
-use std::io::{self, Read, Write as _};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write as _};
 
 use clap::ValueEnum;
 use fc_reflect::Reflector;
 use fc_spec::model::Model;
-use fc_workshop::capture::Ports;
-use fc_workshop::decode::{self, DecodeError, Record, Source};
+use fc_workshop::decode::{self, Record};
 
 use crate::help::{Help, Part};
-use crate::lang::{both, in_lang, lang, said};
+use crate::lang::{both, lang, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
+use crate::recording::{Recording, Shown};
 use crate::spec::Spec;
 
 /// Options of `fcproto decode`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(
-        value_name = "FILE",
-        help = both("输入文件，`-` 表示标准输入 [默认：标准输入]", "Files, with `-` for standard input [default: standard input]")
-    )]
-    files: Vec<PathBuf>,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        help = both("输入格式 [默认：自动识别]", "Format of the input [default: detected]")
-    )]
-    input: Option<Input>,
+    #[command(flatten)]
+    recording: Recording,
     #[arg(
         long = "code",
         value_name = "CODE",
@@ -57,12 +46,6 @@ pub struct Options {
     )]
     results: Vec<String>,
     #[arg(
-        long = "port",
-        value_name = "PORT",
-        help = both("抓包中也读取这些端口的连接", "Also read connections on these ports of a capture")
-    )]
-    ports: Vec<u16>,
-    #[arg(
         long,
         value_name = "PART",
         help = both("只显示一部分", "Show a part only")
@@ -75,41 +58,6 @@ pub struct Options {
         help = both("输出格式", "Output format")
     )]
     format: Shown,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Shown {
-    #[value(help = both("每帧一棵树", "A tree per frame"))]
-    Text,
-    #[value(help = both("每帧一行 JSON", "One line of JSON per frame"))]
-    Json,
-}
-
-/// The format of the input.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Input {
-    #[value(help = both("十六进制，也可以是 `xxd` 或 `hexdump -C` 的输出", "Hexadecimal, also as `xxd` or `hexdump -C` print it"))]
-    Hex,
-    #[value(help = both("原始字节", "The bytes themselves"))]
-    Binary,
-    #[value(help = both("base64", "Base64"))]
-    Base64,
-    #[value(help = both("pcap 或 pcapng 抓包", "A capture, pcap or pcapng"))]
-    Capture,
-    #[value(help = both("`tcpdump -x` 或 `tcpdump -X` 的文本", "The text of `tcpdump -x` or `tcpdump -X`"))]
-    Tcpdump,
-}
-
-impl From<Input> for decode::Format {
-    fn from(input: Input) -> Self {
-        match input {
-            Input::Hex => Self::Hex,
-            Input::Binary => Self::Binary,
-            Input::Base64 => Self::Base64,
-            Input::Capture => Self::Capture,
-            Input::Tcpdump => Self::Tcpdump,
-        }
-    }
 }
 
 /// The part to show.
@@ -165,45 +113,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         filter,
         status: Status::Fine,
     };
-    crate::progress::done();
-    let input = Path::new("-").to_owned();
-    let files = if options.files.is_empty() {
-        &[input]
-    } else {
-        options.files.as_slice()
-    };
-    for file in files {
-        let result = if file.as_os_str() == "-" {
-            printer.print(&reflector, io::stdin())
-        } else {
-            printer.print(
-                &reflector,
-                File::open(file).map_err(|error| cannot(file, &error))?,
-            )
-        };
-        result.map_err(|error| failure(file, error))?;
-    }
+    options
+        .recording
+        .read(&reflector, &mut |record| printer.print(record))?;
     Ok(printer.status)
-}
-
-fn failure(file: &Path, error: DecodeError) -> Failure {
-    match error {
-        DecodeError::Read(error) => cannot(file, &error),
-        DecodeError::Input(error) => {
-            let (file, error) = (file.display(), in_lang(error.text()));
-            said!("`{file}`：{error}", "`{file}`: {error}").into()
-        }
-        DecodeError::Sink(error) => error.into(),
-    }
-}
-
-fn cannot(file: &Path, error: &io::Error) -> Failure {
-    let file = file.display();
-    said!(
-        "无法读取 `{file}`：{error}",
-        "cannot read `{file}`: {error}"
-    )
-    .into()
 }
 
 /// Selects records.
@@ -277,33 +190,22 @@ struct Printer<'o, 'm> {
     status: Status,
 }
 
-impl<'m> Printer<'_, 'm> {
-    fn print(
-        &mut self,
-        reflector: &Reflector<'m>,
-        input: impl Read + Send,
-    ) -> Result<(), DecodeError> {
-        let source = Source {
-            input,
-            format: self.options.input.map(Into::into),
-            ports: Ports::new(self.model, &self.options.ports),
+impl Printer<'_, '_> {
+    fn print(&mut self, record: &Record<'_>) -> io::Result<()> {
+        if !self.filter.wants(record) {
+            return Ok(());
+        }
+        if record.error.is_some() {
+            self.status = Status::Faulty;
+        }
+        let mut text = if self.options.format == Shown::Json {
+            decode::json(record)
+        } else {
+            decode::text(record, self.model, lang())
         };
-        decode::read(reflector, source, &mut |record| {
-            if !self.filter.wants(record) {
-                return Ok(());
-            }
-            if record.error.is_some() {
-                self.status = Status::Faulty;
-            }
-            let mut text = if self.options.format == Shown::Json {
-                decode::json(record)
-            } else {
-                decode::text(record, self.model, lang())
-            };
-            text.push('\n');
-            let mut stdout = anstream::stdout().lock();
-            stdout.write_all(text.as_bytes())?;
-            stdout.flush()
-        })
+        text.push('\n');
+        let mut stdout = anstream::stdout().lock();
+        stdout.write_all(text.as_bytes())?;
+        stdout.flush()
     }
 }

@@ -9,6 +9,7 @@ mod check;
 mod codes;
 mod decode;
 mod diff;
+mod drift;
 mod encode;
 mod explain;
 mod fmt;
@@ -32,6 +33,7 @@ mod print;
 mod progress;
 mod project;
 mod questions;
+mod recording;
 mod release;
 mod retire;
 mod schema;
@@ -87,6 +89,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Release(options) => release::run(&args.place, options),
         Command::Codes(options) => codes::run(&args.place, options),
         Command::Decode(options) => decode::run(&args.place, options),
+        Command::Drift(options) => drift::run(&args.place, options),
         Command::Encode(options) => encode::run(&args.place, options),
         Command::Retire(options) => retire::run(&args.place, options),
         Command::Call(options) => call::run(&args.place, options),

@@ -9,6 +9,7 @@
 //! **Architecture invariant:** this crate does not know the products made from a model, and it writes no files. The crates that make
 //! products depend on this crate and never see YAML.
 
+pub mod amend;
 pub mod diagnostic;
 pub mod fix;
 pub mod format;

@@ -9,6 +9,7 @@ pub mod capture;
 pub mod client;
 pub mod connection;
 pub mod decode;
+pub mod drift;
 mod dump;
 pub mod facts;
 pub mod mock;

@@ -13,7 +13,7 @@ use clap::{Arg, ArgAction, Command, CommandFactory as _};
 use crate::args::{self, Args};
 use crate::lang::both;
 use crate::{
-    call, changelog, check, codes, decode, diff, encode, explain, fmt, generate, git, init,
+    call, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate, git, init,
     inspect, lint, lsp, mock, new, package, places, questions, release, retire, schema, settle,
     shell,
 };
@@ -71,6 +71,7 @@ fn of(path: &[&str]) -> Option<Help> {
         ["mock"] => mock::help(),
         ["decode"] => decode::help(),
         ["encode"] => encode::help(),
+        ["drift"] => drift::help(),
         ["git"] => git::help(),
         ["git", "setup"] => git::setup::help(),
         ["git", "check"] => git::check::help(),

@@ -17,6 +17,7 @@ mod check;
 mod codes;
 mod decode;
 mod diff;
+mod drift;
 mod edits;
 mod explain;
 mod fmt;

@@ -18,6 +18,7 @@ pub use input::{Format, InputError};
 pub use json::line as json;
 pub use pair::Request;
 pub use source::{DecodeError, Source, read};
+pub(crate) use text::{clipped, clock, scalar};
 pub use text::{hex, tree as text};
 
 use crate::capture::Flow;

@@ -257,7 +257,7 @@ impl Tree<'_> {
 }
 
 /// Returns the time of day in UTC.
-fn clock(time: Duration) -> String {
+pub(crate) fn clock(time: Duration) -> String {
     let seconds = time.as_secs();
     let (hours, minutes) = (seconds / 3600 % 24, seconds / 60 % 60);
     let micros = time.subsec_micros();
@@ -287,7 +287,7 @@ pub fn hex(bytes: &[u8]) -> String {
     out
 }
 
-fn scalar(value: &Scalar) -> String {
+pub(crate) fn scalar(value: &Scalar) -> String {
     match value {
         Scalar::Bool(value) => value.to_string(),
         Scalar::Number(Number::Int(value)) => value.to_string(),
@@ -302,7 +302,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// Returns the beginning of a text on one line.
-fn clipped(text: &str) -> String {
+pub(crate) fn clipped(text: &str) -> String {
     let mut shown: String = text.chars().take(LONGEST).collect();
     if shown.len() < text.len() {
         shown.push('…');

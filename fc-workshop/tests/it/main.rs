@@ -11,6 +11,7 @@
 
 mod arguments;
 mod decode;
+mod drift;
 mod mock;
 mod scenarios;
 mod support;

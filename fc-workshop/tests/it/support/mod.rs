@@ -20,23 +20,30 @@ pub fn model_in(root: &Path) -> Model {
     loaded(&sources, faults)
 }
 
-/// A small protocol with another byte order, header and envelope than that of the repository.
-pub fn small() -> Model {
-    let files = [
-        (
-            "spec/protocol.yaml",
-            include_str!("../../../../fc-reflect/tests/small/protocol.yaml"),
-        ),
-        (
-            "spec/commands/lamp.yaml",
-            include_str!("../../../../fc-reflect/tests/small/commands/lamp.yaml"),
-        ),
-    ];
-    let files = files.map(|(path, text)| (path.to_owned(), text.to_owned()));
+const SMALL: [(&str, &str); 2] = [
+    (
+        "spec/protocol.yaml",
+        include_str!("../../../../fc-reflect/tests/small/protocol.yaml"),
+    ),
+    (
+        "spec/commands/lamp.yaml",
+        include_str!("../../../../fc-reflect/tests/small/commands/lamp.yaml"),
+    ),
+];
+
+/// The model of the small spec, with further text in its files.
+pub fn model(change: impl Fn(String) -> String) -> Model {
+    let files = SMALL.map(|(path, text)| (path.to_owned(), change(text.to_owned())));
     loaded(&Sources::from_texts(files), Faults::new())
 }
 
-fn loaded(sources: &Sources, mut faults: Faults) -> Model {
+/// A small protocol with another byte order, header and envelope than that of the repository.
+pub fn small() -> Model {
+    model(|text| text)
+}
+
+/// The model of a spec without errors.
+pub fn loaded(sources: &Sources, mut faults: Faults) -> Model {
     let model = load(sources, &mut faults).model();
     model.unwrap_or_else(|| panic!("{}", render(&faults, sources, Format::Text, Lang::En)))
 }

@@ -1,0 +1,126 @@
+//! Recorded bytes: files or standard input, in one of several formats.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use fc_reflect::Reflector;
+use fc_workshop::capture::Ports;
+use fc_workshop::decode::{self, DecodeError, Record, Source};
+
+use crate::lang::{both, in_lang, said};
+use crate::outcome::Failure;
+
+/// Options that name recorded bytes.
+#[derive(Debug, clap::Args)]
+pub struct Recording {
+    #[arg(
+        value_name = "FILE",
+        help = both("输入文件，`-` 表示标准输入 [默认：标准输入]", "Files, with `-` for standard input [default: standard input]")
+    )]
+    files: Vec<PathBuf>,
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        help = both("输入格式 [默认：自动识别]", "Format of the input [default: detected]")
+    )]
+    input: Option<Input>,
+    #[arg(
+        long = "port",
+        value_name = "PORT",
+        help = both("抓包中也读取这些端口的连接", "Also read connections on these ports of a capture")
+    )]
+    ports: Vec<u16>,
+}
+
+/// The format of the input.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Input {
+    #[value(help = both("十六进制，也可以是 `xxd` 或 `hexdump -C` 的输出", "Hexadecimal, also as `xxd` or `hexdump -C` print it"))]
+    Hex,
+    #[value(help = both("原始字节", "The bytes themselves"))]
+    Binary,
+    #[value(help = both("base64", "Base64"))]
+    Base64,
+    #[value(help = both("pcap 或 pcapng 抓包", "A capture, pcap or pcapng"))]
+    Capture,
+    #[value(help = both("`tcpdump -x` 或 `tcpdump -X` 的文本", "The text of `tcpdump -x` or `tcpdump -X`"))]
+    Tcpdump,
+}
+
+impl From<Input> for decode::Format {
+    fn from(input: Input) -> Self {
+        match input {
+            Input::Hex => Self::Hex,
+            Input::Binary => Self::Binary,
+            Input::Base64 => Self::Base64,
+            Input::Capture => Self::Capture,
+            Input::Tcpdump => Self::Tcpdump,
+        }
+    }
+}
+
+/// The output for people or for programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Shown {
+    #[value(help = both("供人阅读", "For people"))]
+    Text,
+    #[value(help = both("每条一行 JSON", "One line of JSON each"))]
+    Json,
+}
+
+impl Recording {
+    /// Describes all frames. `sink` receives each record.
+    pub fn read<'m>(
+        &self,
+        reflector: &Reflector<'m>,
+        sink: &mut dyn FnMut(&Record<'m>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        crate::progress::done();
+        let input = Path::new("-").to_owned();
+        let files = if self.files.is_empty() {
+            &[input]
+        } else {
+            self.files.as_slice()
+        };
+        for file in files {
+            let result = if file.as_os_str() == "-" {
+                decode::read(reflector, self.source(reflector, io::stdin()), sink)
+            } else {
+                let opened = File::open(file).map_err(|error| cannot(file, &error))?;
+                decode::read(reflector, self.source(reflector, opened), sink)
+            };
+            result.map_err(|error| failure(file, error))?;
+        }
+        Ok(())
+    }
+
+    fn source<R: Read + Send>(&self, reflector: &Reflector<'_>, input: R) -> Source<R> {
+        Source {
+            input,
+            format: self.input.map(Into::into),
+            ports: Ports::new(reflector.model(), &self.ports),
+        }
+    }
+}
+
+fn failure(file: &Path, error: DecodeError) -> Failure {
+    match error {
+        DecodeError::Read(error) => cannot(file, &error),
+        DecodeError::Input(error) => {
+            let (file, error) = (file.display(), in_lang(error.text()));
+            said!("`{file}`：{error}", "`{file}`: {error}").into()
+        }
+        DecodeError::Sink(error) => error.into(),
+    }
+}
+
+fn cannot(file: &Path, error: &io::Error) -> Failure {
+    let file = file.display();
+    said!(
+        "无法读取 `{file}`：{error}",
+        "cannot read `{file}`: {error}"
+    )
+    .into()
+}
