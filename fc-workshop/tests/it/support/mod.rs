@@ -22,6 +22,11 @@ pub fn model_in(root: &Path) -> Model {
 
 /// A small protocol with another byte order, header and envelope than that of the repository.
 pub fn small() -> Model {
+    small_with(str::to_owned)
+}
+
+/// The small protocol, with changed files.
+pub fn small_with(change: impl Fn(&str) -> String) -> Model {
     let files = [
         (
             "spec/protocol.yaml",
@@ -32,7 +37,7 @@ pub fn small() -> Model {
             include_str!("../../../../fc-reflect/tests/small/commands/lamp.yaml"),
         ),
     ];
-    let files = files.map(|(path, text)| (path.to_owned(), text.to_owned()));
+    let files = files.map(|(path, text)| (path.to_owned(), change(text)));
     loaded(&Sources::from_texts(files), Faults::new())
 }
 
