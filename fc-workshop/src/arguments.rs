@@ -52,7 +52,7 @@ impl<'m> Arguments<'m> {
     /// # Errors
     /// [`ArgumentError`] for an unknown key, or a value of another type.
     pub fn object<'t>(
-        &self,
+        self,
         body: &StructRef,
         arguments: impl IntoIterator<Item = &'t str>,
     ) -> Result<Value, ArgumentError> {
@@ -75,7 +75,7 @@ impl<'m> Arguments<'m> {
 
     /// Sets the value at the end of a path that begins with a key of an object.
     fn set_key(
-        &self,
+        self,
         shape: &StructType,
         object: &mut Value,
         steps: &[&str],
@@ -100,7 +100,7 @@ impl<'m> Arguments<'m> {
     }
 
     fn set(
-        &self,
+        self,
         ty: &Type,
         field: &Field,
         value: &mut Value,
@@ -169,7 +169,7 @@ impl<'m> Arguments<'m> {
     }
 
     /// Reads a value. Returns `None` if the text does not fit the type.
-    fn value(&self, ty: &Type, text: &str) -> Option<Value> {
+    fn value(self, ty: &Type, text: &str) -> Option<Value> {
         Some(match ty {
             Type::Bool => Value::Bool(text.parse().ok()?),
             Type::Int(_) | Type::TimestampMs | Type::TimestampS => {
@@ -197,7 +197,7 @@ impl<'m> Arguments<'m> {
         })
     }
 
-    fn wrong_value(&self, ty: &Type, key: &str, text: &str) -> ArgumentError {
+    fn wrong_value(self, ty: &Type, key: &str, text: &str) -> ArgumentError {
         let expected = self.expected(ty);
         ArgumentError(text!(
             "`{key}` 应为{expected}，实际为 `{text}`",
@@ -207,7 +207,7 @@ impl<'m> Arguments<'m> {
     }
 
     /// Returns the accepted values of a type in words.
-    fn expected(&self, ty: &Type) -> Text {
+    fn expected(self, ty: &Type) -> Text {
         match ty {
             Type::Bool => text!(" `true` 或 `false`", "`true` or `false`"),
             Type::Int(kind) => {
@@ -233,12 +233,12 @@ impl<'m> Arguments<'m> {
             }
             Type::Named(named) => match &self.model.types.get(named).shape {
                 TypeShape::Enum(shape) => {
-                    let names = shape.values.iter().map(|value| {
+                    let known = shape.values.iter().map(|value| {
                         let wire = Value::from(&value.wire);
                         format!("{} ({wire})", value.name)
                     });
-                    let names = names.collect::<Vec<_>>().join(", ");
-                    text!("以下之一：{names}", "one of {names}")
+                    let known = known.collect::<Vec<_>>().join(", ");
+                    text!("以下之一：{known}", "one of {known}")
                 }
                 TypeShape::Struct(_) | TypeShape::OneOf(_) => text!(
                     " JSON 对象；也可以用点号写它的键",

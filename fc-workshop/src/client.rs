@@ -130,7 +130,7 @@ impl<'m> Client<'m> {
             timeout: wait,
             retries: 0,
         };
-        let sent = self.connection.request(kind, code, data, policy, ());
+        let sent = self.connection.request(kind, code, &data, policy, ());
         sent.map_err(ClientError::NotSent)?;
         loop {
             match self.connection.next().await {

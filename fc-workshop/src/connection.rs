@@ -99,18 +99,18 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
         &mut self,
         kind: u8,
         code: u16,
-        data: Arc<[u8]>,
+        data: &Arc<[u8]>,
         policy: AckPolicy,
         token: T,
     ) -> Result<FrameId, NotSent> {
         let open = Open {
-            data: Arc::clone(&data),
+            data: Arc::clone(data),
             token,
         };
         let opened = self.session.open(kind, code, policy, Instant::now(), open);
         let frame = opened.map_err(NotSent::Busy)?;
         let id = in_frame(frame);
-        match self.reflector.seal(id, &data, Packing::Plain) {
+        match self.reflector.seal(id, data, Packing::Plain) {
             Ok(bytes) => {
                 self.send(&bytes);
                 Ok(id)

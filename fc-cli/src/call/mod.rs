@@ -7,8 +7,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::ValueEnum;
+use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Reflector};
-use fc_spec::model::{Effect, Kind, Model, Operation, Value};
+use fc_spec::model::{Effect, Kind, Model, Operation, Side, Value};
 use fc_workshop::arguments::{Arguments, json};
 use fc_workshop::facts;
 
@@ -241,6 +242,31 @@ fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Req
         )
         .into());
     };
+    if operation.kind() == Kind::Stream {
+        let is_received = operation.sender == Side::Robot;
+        if is_received && (options.json.is_some() || !options.arguments.is_empty()) {
+            return Err(said!(
+                "`{name}` 由机器人发送，不接受参数",
+                "the robot sends `{name}`, so it takes no arguments"
+            )
+            .into());
+        }
+        if !is_received && operation.body(Direction::Request).is_none() {
+            return Err(said!(
+                "`{name}` 的内容是字节，`call` 只发送 JSON",
+                "`{name}` has bytes, and `call` sends only JSON"
+            )
+            .into());
+        }
+        if is_received {
+            return Ok(Request {
+                operation: Some(operation),
+                kind: id.kind,
+                code: id.code,
+                data: Vec::new(),
+            });
+        }
+    }
     let body = match (&options.json, operation.body(Direction::Request)) {
         (Some(text), _) => read_json(text)?,
         (None, Some(body)) => {
@@ -249,15 +275,15 @@ fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Req
         }
         (None, None) => Value::Object(Vec::new()),
     };
-    let data = match operation.kind() {
-        Kind::Stream => body.to_string(),
-        _ => {
-            let profile = fc_reflect::sample::Profile::Example;
-            let mut message = (reflector.samples()).enveloped(Direction::Request, body, profile);
-            facts::stamp(model, Direction::Request, &mut message);
-            message.to_string()
-        }
+    let data = if operation.kind() == Kind::Stream {
+        body
+    } else {
+        let samples = reflector.samples();
+        let mut message = samples.enveloped(Direction::Request, body, Profile::Example);
+        facts::stamp(model, Direction::Request, &mut message);
+        message
     };
+    let data = data.to_string();
     let checked = reflector.message(Some(operation), Direction::Request, data.as_bytes());
     let text = checked.and_then(|message| message.canonical());
     let text = text.map_err(|error| show::breaks_the_spec(model, operation, &error))?;
@@ -324,9 +350,10 @@ fn bytes(hex: &str) -> Option<Vec<u8>> {
 /// Refuses an operation with a larger effect than allowed. An unknown effect counts as a motion.
 fn allow(operation: Option<&Operation>, allowed: Option<Allowed>) -> Result<(), Failure> {
     let effect = match operation {
-        Some(operation) if operation.kind() == Kind::Stream => Some(Effect::Read),
-        Some(operation) => operation.effect(),
-        None => None,
+        Some(operation) if operation.kind() != Kind::Stream => operation.effect(),
+        // Receiving changes nothing.
+        Some(operation) if operation.sender == Side::Robot => Some(Effect::Read),
+        Some(_) | None => None,
     };
     let effect = effect.unwrap_or(Effect::Unknown);
     let needed = match effect {

@@ -80,7 +80,7 @@ impl<'m> Call<'_, 'm> {
         let message = (self.reflector).message(request.operation, Direction::Response, &frame.data);
         let message = match message {
             Ok(message) => message,
-            Err(error) => return invalid(&error),
+            Err(error) => return Ok(invalid(&error)),
         };
         let outcome = Outcome::of(self.reflector.model(), &message);
         let name = request.operation.map(|operation| operation.name.as_str());
@@ -89,7 +89,7 @@ impl<'m> Call<'_, 'm> {
             return Ok(Status::Refused);
         }
         if let Err(error) = &message.body {
-            return invalid(error);
+            return Ok(invalid(error));
         }
         match (self.follow, request.operation) {
             (Some(silence), Some(operation)) => {
@@ -170,13 +170,13 @@ fn value(data: &[u8]) -> Value {
     text.and_then(json).unwrap_or(Value::Null)
 }
 
-fn invalid(error: &fc_reflect::BodyError) -> Result<Status, Failure> {
+fn invalid(error: &fc_reflect::BodyError) -> Status {
     let text = said!(
         "响应不合规范：{error}",
         "the response breaks the spec: {error}"
     );
     print::failure(Failure::from(text).as_ref());
-    Ok(Status::Unanswered)
+    Status::Unanswered
 }
 
 /// Adds the port to an address that has none. An IPv6 address with a port has brackets.

@@ -71,10 +71,10 @@ impl Format {
         if self.json || count < 2 {
             return String::new();
         }
-        let (least, median, most) = (at(0), at(last / 2), at(last));
+        let (first, median, last) = (at(0), at(last / 2), at(last));
         said!(
-            "{count} 次响应：最短 {least} ms，中位 {median} ms，最长 {most} ms\n",
-            "{count} responses: shortest {least} ms, median {median} ms, longest {most} ms\n"
+            "{count} 次响应：最短 {first} ms，中位 {median} ms，最长 {last} ms\n",
+            "{count} responses: shortest {first} ms, median {median} ms, longest {last} ms\n"
         )
     }
 

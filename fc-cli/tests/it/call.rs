@@ -73,6 +73,12 @@ const CASES: &[Case] = &[
         3,
         &["0x0777"],
     ),
+    (&["glow", "lux=1"], 2, &["takes no arguments"]),
+    (
+        &["firmware", "--allow", "motion"],
+        2,
+        &["`firmware` has bytes"],
+    ),
     (&["--list"], 0, &["get_level  0x0102", "unassigned", "glow"]),
 ];
 
@@ -127,7 +133,7 @@ fn json_output_has_a_line_per_message() {
     let lines: Vec<Value> = run
         .stdout
         .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
+        .map(|line| serde_json::from_str(line).expect("JSON"))
         .collect();
     assert_eq!(lines.len(), 3);
     for line in lines {
@@ -153,10 +159,42 @@ fn a_robot_that_is_not_there_gives_status_4() {
 fn a_robot_that_does_not_answer_gives_status_4() {
     let project = Project::new();
     // The listener accepts in the kernel, and no program reads.
-    let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
-    let address = silent.local_addr().unwrap().to_string();
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = silent.local_addr().expect("its address").to_string();
     let run = project
         .fc(&["call", "get_level", "--to", &address, "--timeout", "50"])
         .expect(4);
     assert!(run.stderr.contains("no response within 50 ms"), "{run:?}");
 }
+
+#[test]
+fn a_process_is_followed_to_its_end() {
+    let project = Project::new();
+    let mock = Mock::start(&project, &["--pace", "5"]);
+    let set_level: Vec<&str> = SET_LEVEL.split_whitespace().collect();
+    let refused = mock.call(&project, &set_level).expect(3);
+    assert!(
+        refused.stdout.contains("send get_level first"),
+        "{refused:?}"
+    );
+    for args in [&["get_level"][..], &["probe", "--allow", "motion"]] {
+        mock.call(&project, args).expect(0);
+    }
+    let run = mock
+        .call(&project, &[&set_level, &["--follow"][..]].concat())
+        .expect(0);
+    let states = ["dark (0)", "state (4)", "burning (3)"];
+    let mut rest = run.stdout.as_str();
+    for state in states {
+        let at = rest
+            .find(state)
+            .unwrap_or_else(|| panic!("no {state}: {run:?}"));
+        rest = &rest[at..];
+    }
+    // The command has started the stream `glow` on the data port.
+    let run = project.fc(&["call", "glow", "--to", &mock.data]).expect(0);
+    assert_eq!(run.stdout, "glow  Glow\nlux  0.5 %  Glow\n");
+}
+
+const SET_LEVEL: &str = "set_level --allow motion data.level=40 data.ratio=0.25 data.armed=true \
+    data.label=lamp data.serial=AB data.colours.0.red=1 data.colours.0.green=2 data.phase=dark";

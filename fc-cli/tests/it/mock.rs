@@ -15,7 +15,7 @@ fn a_mock_ends_on_each_signal() {
 fn a_taken_port_is_an_error_that_names_it() {
     let project = Project::new();
     let mock = Mock::start(&project, &[]);
-    let port = mock.commands.rsplit_once(':').unwrap().1;
+    let port = mock.commands.rsplit_once(':').expect("a port").1;
     let run = project
         .fc(&["mock", "--command-port", port, "--data-port", "0"])
         .expect(2);

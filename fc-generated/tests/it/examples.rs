@@ -1,15 +1,64 @@
-//! The two example programs against each other, as somebody tries them out.
+//! The two example programs against each other, and the app against a mock.
 
 use crate::support::programs::{Robot, examples};
 use fc_generated::descriptors::OPERATIONS;
 use fc_runtime::{OperationInfo, OperationKind};
+use fc_spec::diagnostic::Faults;
+use fc_spec::load::load;
+use fc_spec::model::Exchange;
+use fc_spec::syntax::read_dir;
+use fc_workshop::mock::{Mock, Settings};
+use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 #[test]
 fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
     let [robot, app] = examples(["robot", "app"], "");
     let robot = Robot::start(&robot, &["--once"]);
-    let [command, data] = robot.ports.map(|port| port.to_string());
+    tour(&app, robot.ports);
+
+    let (status, rest, log) = robot.wait();
+    assert!(status.success(), "{rest}{log}");
+    let reports = OPERATIONS
+        .iter()
+        .filter(|operation| operation.kind == OperationKind::Report);
+    for report in reports.filter(|report| report.code.is_some()) {
+        // Which number the connection has depends on which port is accepted first.
+        let start = format!("{} to #", report.name);
+        let acknowledged = rest
+            .lines()
+            .any(|line| line.starts_with(&start) && line.ends_with(": Acknowledged"));
+        assert!(acknowledged, "no `{start}…: Acknowledged` in\n{rest}");
+    }
+}
+
+#[test]
+fn the_app_tours_a_mock_of_the_spec() {
+    let [app] = examples(["app"], "");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut faults = Faults::new();
+    let sources = read_dir(&root, Path::new("spec"), &mut faults);
+    let mut model = load(&sources, &mut faults).model().expect("a valid spec");
+    // The app calls everything once, in the order of the spec, so preconditions of the owner must not count.
+    for operation in &mut model.operations {
+        if let Exchange::Command { accepted, .. } = &mut operation.exchange {
+            *accepted = None;
+        }
+    }
+    let settings = Settings {
+        pace: Duration::from_millis(1),
+        // The example robot, too, sends its picture after this command.
+        stream_after: vec!["get_map_image".to_owned()],
+        ..Settings::any_port()
+    };
+    let mock = Mock::start(model, settings).unwrap();
+    tour(&app, [mock.commands().port(), mock.data().port()]);
+}
+
+/// Lets the app call every command, and checks its table.
+fn tour(app: &Path, ports: [u16; 2]) {
+    let [command, data] = ports.map(|port| port.to_string());
     let tour = Command::new(app)
         .args(["--command-port", &command, "--data-port", &data])
         .args(["--lang", "zh"])
@@ -33,18 +82,4 @@ fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
         );
     }
     assert!(table.contains("MD5 一致"), "no picture in\n{table}");
-
-    let (status, rest, log) = robot.wait();
-    assert!(status.success(), "{rest}{log}");
-    let reports = OPERATIONS
-        .iter()
-        .filter(|operation| operation.kind == OperationKind::Report);
-    for report in reports.filter(|report| report.code.is_some()) {
-        // Which number the connection has depends on which port is accepted first.
-        let start = format!("{} to #", report.name);
-        let acknowledged = rest
-            .lines()
-            .any(|line| line.starts_with(&start) && line.ends_with(": Acknowledged"));
-        assert!(acknowledged, "no `{start}…: Acknowledged` in\n{rest}");
-    }
 }

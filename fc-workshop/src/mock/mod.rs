@@ -303,9 +303,8 @@ impl<'m> Stage<'m> {
 
     fn push(&self, connection: &mut Connection<'m, TcpStream, ()>, report: &Report) {
         let kind = self.reflector.model().frame.kinds.report.value;
-        let data = Arc::clone(&report.data);
         // An app with too many unacknowledged reports misses this one.
-        let _ = connection.request(kind, report.code, data, report.ack, ());
+        let _ = connection.request(kind, report.code, &report.data, report.ack, ());
     }
 
     /// Sends streams to one app until it ends the connection.

@@ -104,17 +104,14 @@ impl<'m> Robot<'m> {
             return None;
         }
         let (report, message) = (planned.report, planned.message.clone());
-        match planned.interval {
-            Some(interval) => {
-                if let Some(planned) = self.plan.get_mut(first) {
-                    planned.due = now + interval;
-                }
+        if let Some(interval) = planned.interval {
+            if let Some(planned) = self.plan.get_mut(first) {
+                planned.due = now + interval;
             }
-            None => {
-                self.plan.remove(first);
-                self.memory
-                    .observe(self.reflector.model(), report, &message);
-            }
+        } else {
+            self.plan.remove(first);
+            self.memory
+                .observe(self.reflector.model(), report, &message);
         }
         self.report(report, message)
     }
@@ -186,25 +183,22 @@ impl<'m> Robot<'m> {
         action: &Action,
     ) -> Option<Answer<'m>> {
         let model = self.reflector.model();
-        let mut answer = match action.refuse {
-            Some(code) => {
-                let result = model.results.iter().find(|result| result.code == code)?;
-                let message = self.reflector.samples().response(None, result);
-                Answer::new(self.seal(id.answer(), message)?, None)
+        let mut answer = if let Some(code) = action.refuse {
+            let result = model.results.iter().find(|result| result.code == code)?;
+            let message = self.reflector.samples().response(None, result);
+            Answer::new(self.seal(id.answer(), message)?, None)
+        } else {
+            self.memory.accept(model, command, request);
+            let success = facts::result(model, ResultRole::Success)?;
+            let mut message = (self.reflector.samples()).response(Some(command), success);
+            (self.memory).fill(model, command, Direction::Response, &mut message);
+            if let Some(values) = &action.answer {
+                merge(&mut message, values);
             }
-            None => {
-                self.memory.accept(model, command, request);
-                let success = facts::result(model, ResultRole::Success)?;
-                let mut message = (self.reflector.samples()).response(Some(command), success);
-                (self.memory).fill(model, command, Direction::Response, &mut message);
-                if let Some(values) = &action.answer {
-                    merge(&mut message, values);
-                }
-                if action.reports.is_none() {
-                    self.begin(command, request, &message);
-                }
-                Answer::new(self.seal(id.answer(), message)?, Some(command))
+            if action.reports.is_none() {
+                self.begin(command, request, &message);
             }
+            Answer::new(self.seal(id.answer(), message)?, Some(command))
         };
         self.plan_scripted(action);
         if action.bad_digest {

@@ -1,6 +1,6 @@
 //! A mock against the client of this crate.
 
-use crate::support::{model, small};
+use crate::support::{small, small_with};
 use fc_reflect::{Direction, Reflector};
 use fc_spec::diagnostic::Faults;
 use fc_spec::model::{Model, Value};
@@ -17,7 +17,7 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A process, a precondition and a stored value, added to the small spec.
-fn lively(text: String) -> String {
+fn lively(text: &str) -> String {
     let text = text.replace(
         "    request:\n      lvl:",
         "    kept: flash\n    sets_off: [dimmed]\n    request:\n      lvl:",
@@ -117,7 +117,7 @@ fn invalid_requests_get_the_results_of_the_protocol() {
 
 #[test]
 fn a_process_runs_from_its_start_to_its_end() {
-    let model = model(lively);
+    let model = small_with(lively);
     let reflector = Reflector::new(&model);
     let settings = Settings {
         pace: Duration::from_millis(1),
@@ -146,7 +146,7 @@ fn a_process_runs_from_its_start_to_its_end() {
 
 #[test]
 fn preconditions_refuse_and_values_are_kept() {
-    let model = model(lively);
+    let model = small_with(lively);
     let reflector = Reflector::new(&model);
     let mock = Mock::start(model.clone(), Settings::any_port()).unwrap();
     block_on(async {

@@ -20,26 +20,25 @@ pub fn model_in(root: &Path) -> Model {
     loaded(&sources, faults)
 }
 
-const SMALL: [(&str, &str); 2] = [
-    (
-        "spec/protocol.yaml",
-        include_str!("../../../../fc-reflect/tests/small/protocol.yaml"),
-    ),
-    (
-        "spec/commands/lamp.yaml",
-        include_str!("../../../../fc-reflect/tests/small/commands/lamp.yaml"),
-    ),
-];
-
-/// The model of the small spec, with further text in its files.
-pub fn model(change: impl Fn(String) -> String) -> Model {
-    let files = SMALL.map(|(path, text)| (path.to_owned(), change(text.to_owned())));
-    loaded(&Sources::from_texts(files), Faults::new())
-}
-
 /// A small protocol with another byte order, header and envelope than that of the repository.
 pub fn small() -> Model {
-    model(|text| text)
+    small_with(str::to_owned)
+}
+
+/// The small protocol, with changed files.
+pub fn small_with(change: impl Fn(&str) -> String) -> Model {
+    let files = [
+        (
+            "spec/protocol.yaml",
+            include_str!("../../../../fc-reflect/tests/small/protocol.yaml"),
+        ),
+        (
+            "spec/commands/lamp.yaml",
+            include_str!("../../../../fc-reflect/tests/small/commands/lamp.yaml"),
+        ),
+    ];
+    let files = files.map(|(path, text)| (path.to_owned(), change(text)));
+    loaded(&Sources::from_texts(files), Faults::new())
 }
 
 /// The model of a spec without errors.
