@@ -132,8 +132,8 @@ pub fn help() -> Help {
             )),
             Part::Examples(vec![
                 (
-                    "echo FC AA 01 … | fcproto decode",
-                    both("解析粘贴的十六进制", "Decode hexadecimal text"),
+                    "xxd -p dump.bin | fcproto decode",
+                    both("解析十六进制文本", "Decode hexadecimal text"),
                 ),
                 ("fcproto decode --only errors dump.bin", ""),
                 ("fcproto decode --format json capture.pcapng | jq .body", ""),
