@@ -1,7 +1,7 @@
 //! `fcproto decode`.
 
 use std::fs::File;
-use std::io::{self, Read, Write as _};
+use std::io::{self, BufWriter, Read, StdoutLock, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -163,6 +163,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         model,
         options,
         filter,
+        out: BufWriter::new(io::stdout().lock()),
         status: Status::Fine,
     };
     crate::progress::done();
@@ -174,12 +175,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     };
     for file in files {
         let result = if file.as_os_str() == "-" {
-            printer.print(&reflector, io::stdin())
+            // A person may wait for each frame.
+            printer.print(&reflector, io::stdin(), true)
         } else {
-            printer.print(
-                &reflector,
-                File::open(file).map_err(|error| cannot(file, &error))?,
-            )
+            let input = File::open(file).map_err(|error| cannot(file, &error))?;
+            printer.print(&reflector, input, false)
         };
         result.map_err(|error| failure(file, error))?;
     }
@@ -274,6 +274,7 @@ struct Printer<'o, 'm> {
     model: &'m Model,
     options: &'o Options,
     filter: Filter<'o>,
+    out: BufWriter<StdoutLock<'static>>,
     status: Status,
 }
 
@@ -282,6 +283,7 @@ impl<'m> Printer<'_, 'm> {
         &mut self,
         reflector: &Reflector<'m>,
         input: impl Read + Send,
+        is_live: bool,
     ) -> Result<(), DecodeError> {
         let source = Source {
             input,
@@ -301,9 +303,9 @@ impl<'m> Printer<'_, 'm> {
                 decode::text(record, self.model, lang())
             };
             text.push('\n');
-            let mut stdout = anstream::stdout().lock();
-            stdout.write_all(text.as_bytes())?;
-            stdout.flush()
-        })
+            self.out.write_all(text.as_bytes())?;
+            if is_live { self.out.flush() } else { Ok(()) }
+        })?;
+        self.out.flush().map_err(DecodeError::Sink)
     }
 }
