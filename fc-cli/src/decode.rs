@@ -1,6 +1,6 @@
 //! `fcproto decode`.
 
-use std::io::{self, Write as _};
+use std::io::{self, BufWriter, StdoutLock, Write as _};
 
 use clap::ValueEnum;
 use fc_reflect::Reflector;
@@ -80,8 +80,8 @@ pub fn help() -> Help {
             )),
             Part::Examples(vec![
                 (
-                    "echo FC AA 01 … | fcproto decode",
-                    both("解析粘贴的十六进制", "Decode hexadecimal text"),
+                    "xxd -p dump.bin | fcproto decode",
+                    both("解析十六进制文本", "Decode hexadecimal text"),
                 ),
                 ("fcproto decode --only errors dump.bin", ""),
                 ("fcproto decode --format json capture.pcapng | jq .body", ""),
@@ -111,11 +111,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         model,
         options,
         filter,
+        out: BufWriter::new(io::stdout().lock()),
         status: Status::Fine,
     };
     options
         .recording
         .read(&reflector, &mut |record| printer.print(record))?;
+    printer.out.flush()?;
     Ok(printer.status)
 }
 
@@ -187,6 +189,7 @@ struct Printer<'o, 'm> {
     model: &'m Model,
     options: &'o Options,
     filter: Filter<'o>,
+    out: BufWriter<StdoutLock<'static>>,
     status: Status,
 }
 
@@ -204,8 +207,9 @@ impl Printer<'_, '_> {
             decode::text(record, self.model, lang())
         };
         text.push('\n');
-        let mut stdout = anstream::stdout().lock();
-        stdout.write_all(text.as_bytes())?;
-        stdout.flush()
+        self.out.write_all(text.as_bytes())?;
+        // A person may wait for each frame.
+        let is_live = self.options.recording.is_live();
+        if is_live { self.out.flush() } else { Ok(()) }
     }
 }

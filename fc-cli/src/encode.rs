@@ -90,7 +90,7 @@ pub fn help() -> Help {
                     both("查看这一帧的各部分", "Show the parts of the frame"),
                 ),
                 (
-                    "fcproto encode get_robot_sn --binary | nc 192.168.1.3 PORT",
+                    "fcproto encode get_robot_sn --binary | nc HOST PORT",
                     both("用其他程序发送", "Send it with another program"),
                 ),
             ]),

@@ -101,6 +101,10 @@ pub fn help() -> Help {
                         "schema",
                         both("规范语言的 JSON Schema", "JSON Schema of the spec language"),
                     ),
+                    (
+                        "wireshark",
+                        both("Wireshark 的解析脚本", "Dissector for Wireshark"),
+                    ),
                 ],
             ),
             Part::Text(both(

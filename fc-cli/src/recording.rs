@@ -71,6 +71,11 @@ pub enum Shown {
 }
 
 impl Recording {
+    /// Returns `true` if frames may arrive while a person waits for them.
+    pub fn is_live(&self) -> bool {
+        self.files.is_empty() || self.files.iter().any(|file| file.as_os_str() == "-")
+    }
+
     /// Describes all frames. `sink` receives each record.
     pub fn read<'m>(
         &self,

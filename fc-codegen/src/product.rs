@@ -19,11 +19,13 @@ pub enum Product {
     Cpp,
     /// The JSON Schema of the spec language.
     Schema,
+    /// The dissector for Wireshark.
+    Wireshark,
 }
 
 impl Product {
     /// All products, in the order of generation.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Rust,
         Self::Markdown,
         Self::Vectors,
@@ -32,6 +34,7 @@ impl Product {
         Self::Kotlin,
         Self::Cpp,
         Self::Schema,
+        Self::Wireshark,
     ];
 
     /// Returns the name on the command line, in `fc.yaml` and in the manifest.
@@ -63,6 +66,7 @@ impl Product {
             Self::Kotlin => ("kotlin", "stubs/kotlin"),
             Self::Cpp => ("cpp", "stubs/cpp"),
             Self::Schema => ("schema", "spec"),
+            Self::Wireshark => ("wireshark", "stubs/wireshark"),
         }
     }
 }

@@ -250,7 +250,9 @@ impl Targets {
             Product::Python => vec![self.python()],
             Product::Kotlin => vec![&languages::KOTLIN, &languages::JAVA],
             Product::Cpp => vec![&languages::CPP],
-            Product::Markdown | Product::Vectors | Product::Schema => Vec::new(),
+            Product::Markdown | Product::Vectors | Product::Schema | Product::Wireshark => {
+                Vec::new()
+            }
         }
     }
 

@@ -10,6 +10,7 @@ pub mod rust;
 pub mod schema;
 pub mod typescript;
 pub mod vectors;
+pub mod wireshark;
 
 use crate::product::{Artifact, Product};
 use crate::target::{TargetError, Targets, part};
@@ -32,6 +33,7 @@ pub fn generate(model: &Model, targets: &Targets) -> Result<Vec<Artifact>, Targe
             Product::Kotlin => kotlin::emit,
             Product::Cpp => cpp::emit,
             Product::Schema => schema::emit,
+            Product::Wireshark => wireshark::emit,
         };
         let part = part(model, targets.audience(product))?;
         artifacts.extend(emit(&part, targets));

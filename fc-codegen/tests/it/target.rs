@@ -131,7 +131,7 @@ fn what_the_file_cannot_say_is_refused_by_name() {
         ),
         (
             "targets: { cobol: { out: a } }",
-            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `typescript`, `python`, `kotlin`, `cpp`, `schema`. A target of another name needs a `plugin`",
+            "there is no product `cobol`; the products are `rust`, `markdown`, `vectors`, `typescript`, `python`, `kotlin`, `cpp`, `schema`, `wireshark`. A target of another name needs a `plugin`",
         ),
         (
             "targets: { rust: { plugin: x } }",

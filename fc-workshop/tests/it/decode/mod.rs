@@ -3,6 +3,7 @@
 mod capture;
 mod damage;
 mod formats;
+mod random;
 mod texts;
 mod vectors;
 
