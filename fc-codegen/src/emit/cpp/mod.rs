@@ -13,6 +13,7 @@ mod process;
 mod protocol;
 mod robot;
 pub mod samples;
+mod streams;
 mod tables;
 mod types;
 

@@ -30,7 +30,7 @@ pub static CPP: Language = Language {
     ),
     types: Words::new(
         "AnyReport BOOL Client ECHO EOF ERROR ExampleRobot FALSE FAR FILE INFINITY NAN NULL PartialRobot Reporter \
-        Reports ResultCode Robot StreamCode TRUE Value",
+        Reports ResultCode Robot StreamCode Streamer Streams TRUE Value",
     ),
     fields: Words::new("extra"),
     methods: Words::new(
