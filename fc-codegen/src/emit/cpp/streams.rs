@@ -112,11 +112,11 @@ fn part(
 
 fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
     let (name, code) = (&stream.of.name, &stream.code.spelling);
-    let content = context.content(stream);
+    let carried = context.content(stream);
     out.documented(&facts::method_docs(context, stream.of, |_| ()));
     let data = "return static_cast<const Self*>(this)->data().";
     if stream.sender == Side::Robot {
-        let (ty, call) = match content {
+        let (ty, call) = match carried {
             Some(ty) => (
                 format!("ContentSubscription<{ty}>"),
                 format!("template subscribe_json<{ty}>"),
@@ -127,7 +127,7 @@ fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>)
         out.parameters(&open, &[], ") const {");
         out.line(format!("  {data}{call}({code});"));
     } else {
-        let (ty, call) = match content {
+        let (ty, call) = match carried {
             Some(ty) => (format!("const {ty}&"), "send_json"),
             None => ("std::string_view".to_owned(), "send"),
         };
@@ -142,7 +142,7 @@ fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>)
 
 fn robot(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {
     let (name, code) = (&stream.of.name, &stream.code.spelling);
-    let (ty, call, content) = match context.content(stream) {
+    let (ty, call, value) = match context.content(stream) {
         Some(ty) => (format!("const {ty}&"), "send_stream_json", "content"),
         None => (
             "std::string".to_owned(),
@@ -159,7 +159,7 @@ fn robot(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation
     ];
     out.parameters(&open, &parameters, ") const {");
     out.line(format!(
-        "  return static_cast<const Self*>(this)->server().{call}(to, {code}, id, {content});"
+        "  return static_cast<const Self*>(this)->server().{call}(to, {code}, id, {value});"
     ));
     out.line("}");
 }
