@@ -7,6 +7,7 @@ mod client;
 mod expr;
 mod group;
 mod ids;
+mod java;
 mod messages;
 mod operations;
 mod protocol;
@@ -134,6 +135,7 @@ const IMPORTED: &[&str] = &[
     "fc.runtime.sameOrUnsaid",
     "java.math.BigInteger",
     "java.util.concurrent.CompletableFuture",
+    "java.util.concurrent.CompletionStage",
     "kotlinx.coroutines.flow.Flow",
 ];
 

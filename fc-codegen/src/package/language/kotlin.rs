@@ -28,15 +28,15 @@ const fn kotlin(with_ids: Option<&'static Language>) -> Language {
             this throw true try typealias typeof val var when while",
         ),
         types: Words::new(
-            "AckPolicy Acknowledgement Annotation Any Array Audience AutoCloseable BigInteger Boolean \
+            "AckPolicy Acknowledgement Annotation Any Array AsyncRobot Audience AutoCloseable BigInteger Boolean \
             BooleanArray Builder Byte ByteArray Bytes CallError CallOptions Char CharArray CharSequence \
-            ChoiceType Client ClientConfig Codec Collection Command Comparable Comparator CompletableFuture \
+            ChoiceType Client ClientConfig Codec Collection Command Comparable Comparator CompletableFuture CompletionStage \
             Connection ConnectionState Content Context DataConnection DeclaredError Defaults Deprecated \
             DigestAlgorithm Double DoubleArray Effect Empty Enum EnumType EnvelopeRole Error ExampleAnswers \
             ExampleRobot Exception Extra Field Float FloatArray Flow Following Function HeaderField HeaderLayout \
             HeaderRole Id Int IntArray IntEnumType IntValue Iterable Iterator Json JvmField JvmOverloads JvmStatic \
             JvmSynthetic Lazy Limits List Long LongArray Loss Map Message MessageBuilder MessageType MutableList \
-            MutableMap MutableSet Nothing Number Object Operations OptionalField Override Pair PartialRobot \
+            MutableMap MutableSet Nothing Number Object Operations OptionalField Override Pair PartialAsyncRobot PartialRobot \
             Protocol RawRequest Record Refusal Report Reporter Reports RequestEnvelope ResponseEnvelope Result \
             ResultCode ResultText Results Robot Runnable Sequence Server Service Set Short ShortArray State \
             StateOrder Steps Streamer Streams String StringBuilder Subscription Suppress System Tables \
@@ -55,6 +55,8 @@ const fn kotlin(with_ids: Option<&'static Language>) -> Language {
             "client",
             "handlers",
             "partial",
+            "async_handlers",
+            "async_partial",
             "example",
             "reporter",
             "streams",

@@ -27,6 +27,7 @@ import fc.runtime.StateOrder
 import fc.runtime.Steps
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 回充：`Operations` 中的一部分。
@@ -253,6 +254,13 @@ public interface RechargeClient {
     ): Following<StartRechargeResponse, RechargeProgress> =
         connection.follow(Operations.startRecharge, request, Operations.rechargeProgress, options)
 
+    /** [startRechargeFollowed]，供 Java 使用。[startRechargeFollowed] for Java. */
+    public fun startRechargeFollowedAsync(
+        request: StartRechargeRequest,
+        options: CallOptions,
+    ): CompletableFuture<Following<StartRechargeResponse, RechargeProgress>> =
+        connection.future { startRechargeFollowed(request, options) }
+
     /**
      * 取消一键回充
      * Cancel returning to dock
@@ -430,6 +438,43 @@ internal class RechargeExample(pretendMotion: Boolean) :
 
     override suspend fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): GetRechargeStatusResponse =
         GetRechargeStatusResponse.example()
+}
+
+/**
+ * 回充：`AsyncRobot` 中的一部分。
+ * Return to dock: its part of `AsyncRobot`.
+ */
+public interface RechargeAsyncHandlers {
+    /** [RechargeHandlers.startRecharge]，供 Java 使用。[RechargeHandlers.startRecharge] for Java. */
+    public fun startRecharge(context: Context, request: StartRechargeRequest): CompletionStage<StartRechargeResponse>
+
+    /** [RechargeHandlers.cancelRecharge]，供 Java 使用。[RechargeHandlers.cancelRecharge] for Java. */
+    public fun cancelRecharge(context: Context, request: CancelRechargeRequest): CompletionStage<CancelRechargeResponse>
+
+    /** [RechargeHandlers.getRechargeStatus]，供 Java 使用。[RechargeHandlers.getRechargeStatus] for Java. */
+    public fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): CompletionStage<GetRechargeStatusResponse>
+}
+
+/**
+ * 回充：`PartialAsyncRobot` 中的一部分。
+ * Return to dock: its part of `PartialAsyncRobot`.
+ */
+public interface RechargeAsyncPartial : RechargeAsyncHandlers {
+    override fun startRecharge(context: Context, request: StartRechargeRequest): CompletionStage<StartRechargeResponse> =
+        throw context.notImplemented()
+
+    override fun cancelRecharge(context: Context, request: CancelRechargeRequest): CompletionStage<CancelRechargeResponse> =
+        throw context.notImplemented()
+
+    override fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): CompletionStage<GetRechargeStatusResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onRecharge(robot: RechargeAsyncHandlers): Service = apply {
+    onAsync(Operations.startRecharge, robot::startRecharge)
+    onAsync(Operations.cancelRecharge, robot::cancelRecharge)
+    onAsync(Operations.getRechargeStatus, robot::getRechargeStatus)
 }
 
 /**

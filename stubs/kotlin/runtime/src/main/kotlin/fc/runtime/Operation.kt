@@ -1,5 +1,7 @@
 package fc.runtime
 
+import java.util.concurrent.CompletableFuture
+
 /** The effect of a command on the robot. */
 public enum class Effect {
     /** Only queries. */
@@ -132,6 +134,9 @@ public class Refusal(
     /** Text for people. Never rely on it. */
     public val text: String,
 ) : Exception(null, null, false, false) {
+    /** A future that has failed with this refusal, for a handler in Java. */
+    public fun <T> toFuture(): CompletableFuture<T> = CompletableFuture<T>().also { it.completeExceptionally(this) }
+
     override val message: String get() = "refused with result $code: $text"
 
     override fun equals(other: Any?): Boolean = other is Refusal && other.code == code && other.text == text
