@@ -46,6 +46,22 @@ int call_all() {
   return commands;
 }
 
+/// The facts of operations as data.
+void facts() {
+  const auto& known = odd_line::protocol();
+  const auto* drive = known.find(fc_runtime::OperationKind::Command,
+                                 fc_runtime::Command<odd_line::DriveRequest>::code);
+  check(drive && drive->preconditions && !drive->preconditions->any_state, "conditions");
+  const auto& states = drive->preconditions->states;
+  check(states.size() == 1 && states[0].type == "Going" && states[0].values.size() == 2, "states");
+  check(drive->preconditions->after.size() == 1, "a command that comes first");
+  const auto* went =
+      known.find(fc_runtime::OperationKind::Report, fc_runtime::Report<odd_line::Went>::code);
+  check(went && went->cadence && went->cadence->kind == fc_runtime::CadenceKind::OnChange &&
+            went->cadence->field == "going",
+        "the time of a report");
+}
+
 /// The streams of both sides, through their methods.
 void streams() {
   fc_runtime::ServerConfig robot;
@@ -111,6 +127,7 @@ void said() {
 
 int main() {
   check(call_all() > 70, "there are commands");
+  facts();
   streams();
   said();
   return failed == 0 ? 0 : 1;

@@ -1,11 +1,13 @@
 package user;
 
+import fc.runtime.Cadence;
 import fc.runtime.ClientConfig;
 import fc.runtime.Context;
 import fc.runtime.Followed;
 import fc.runtime.Following;
 import fc.runtime.Server;
 import fc.runtime.ServerConfig;
+import java.util.Collections;
 import java.util.concurrent.CompletableFuture;
 import java.util.concurrent.CompletionException;
 import meter.AsyncRobot;
@@ -13,6 +15,7 @@ import meter.Client;
 import meter.CloseSwitchRequest;
 import meter.CloseSwitchResponse;
 import meter.Meter;
+import meter.Operations;
 import meter.PartialAsyncRobot;
 import meter.ReadPowerRequest;
 import meter.ReadPowerResponse;
@@ -54,6 +57,11 @@ final class JavaRobot implements AsyncRobot {
     }
 
     public static void main(String[] arguments) throws Exception {
+        Cadence.Step step = (Cadence.Step) Operations.priceMoved.getCadence();
+        check(step.getField().equals("data.price") && step.getBy() == 0.5);
+        check(((Cadence.Within) Operations.tariffSet.getCadence()).getMilliseconds() == 500);
+        check(Operations.closeSwitch.getPreconditions().getAfter().equals(Collections.singletonList("read_power")));
+        check(Operations.readPower.getPreconditions() == null);
         for (AsyncRobot robot : new AsyncRobot[] {new JavaRobot(), new Part()}) {
             ServerConfig served = new ServerConfig().address("127.0.0.1").commandPort(0).dataPort(0);
             try (Server server = Server.bind(Meter.INSTANCE, RobotKt.service(robot), served)) {

@@ -88,6 +88,7 @@ const IMPORTED: &[&str] = &[
     "fc.runtime.Acknowledgement",
     "fc.runtime.Audience",
     "fc.runtime.Bytes",
+    "fc.runtime.Cadence",
     "fc.runtime.CallOptions",
     "fc.runtime.ChoiceType",
     "fc.runtime.ClientConfig",

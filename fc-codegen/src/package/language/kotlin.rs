@@ -29,7 +29,7 @@ const fn kotlin(with_ids: Option<&'static Language>) -> Language {
         ),
         types: Words::new(
             "AckPolicy Acknowledgement Annotation Any Array AsyncRobot Audience AutoCloseable BigInteger Boolean \
-            BooleanArray Builder Byte ByteArray Bytes CallError CallOptions Char CharArray CharSequence \
+            BooleanArray Builder Byte ByteArray Bytes Cadence CallError CallOptions Char CharArray CharSequence \
             ChoiceType Client ClientConfig Codec Collection Command Comparable Comparator CompletableFuture CompletionStage \
             Connection ConnectionState Content Context DataConnection DeclaredError Defaults Deprecated \
             DigestAlgorithm Double DoubleArray Effect Empty Enum EnumType EnvelopeRole Error ExampleAnswers \

@@ -7,6 +7,7 @@ import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
 import fc.runtime.Bytes
+import fc.runtime.Cadence
 import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
@@ -268,6 +269,7 @@ public interface MapOperations {
             Report("map_sync_progress", 0x0343, MapSyncProgress, MapSyncProgressAck)
                 .titled("上报地图同步进度", "Progress of map synchronisation")
                 .ack(AckPolicy(2000, 3))
+                .cadence(Cadence.Step("syncMapList.progress", 5.0))
 
         internal fun commands(): List<Command<*, *>> =
             listOf(

@@ -6,6 +6,7 @@ package fc
 import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
+import fc.runtime.Cadence
 import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
@@ -140,6 +141,7 @@ public interface RechargeOperations {
         public val cancelRecharge: Command<CancelRechargeRequest, CancelRechargeResponse> =
             Command("cancel_recharge", 0x0A05, Effect.MOTION, CancelRechargeRequest, CancelRechargeResponse)
                 .titled("取消一键回充", "Cancel returning to dock")
+                .acceptedAlways()
 
         /**
          * 获取回充状态
@@ -167,6 +169,7 @@ public interface RechargeOperations {
             Report("recharge_progress", 0x0B01, RechargeProgress, RechargeProgressAck)
                 .titled("主动上报回充过程和结果", "Progress and result of charging")
                 .ack(AckPolicy(2000, 3))
+                .cadence(Cadence.OnChange("data.rechargeStatus"))
                 .state { report -> report.data.rechargeStatus }
                 .failure { report -> (report.data.rechargeStatus as State?)?.isError == true || (report.data.errorStatus as State?)?.isError == true }
 
