@@ -16,7 +16,7 @@
 //! - Each text of the spec must have all `languages` at the top of the file. The default is both.
 //! - `languages` of a target selects the languages of its pages or of its comments. The default is the list at the top.
 //! - `fc_spec::lint` reads `lint`.
-//! - `newtypes: true` on `rust` or `python` adds an id type for each entity, in both packages.
+//! - `newtypes: true` on a package adds an id type for each entity, in all packages.
 //! - A target with an `audience` gets only the part of the protocol for that audience ([`part`]).
 //! - A plugin's `names: kotlin` requires that Kotlin can use the names of the spec.
 
@@ -244,16 +244,15 @@ impl Targets {
 
     /// Returns the programming languages of a product.
     fn languages_of(&self, product: Product) -> Vec<&'static languages::Language> {
-        match product {
-            Product::Rust => vec![self.rust()],
-            Product::TypeScript => vec![&languages::TYPESCRIPT],
-            Product::Python => vec![self.python()],
-            Product::Kotlin => vec![&languages::KOTLIN, &languages::JAVA],
-            Product::Cpp => vec![&languages::CPP],
-            Product::Markdown | Product::Vectors | Product::Schema | Product::Wireshark => {
-                Vec::new()
-            }
-        }
+        let languages: &[&'static languages::Language] = match product {
+            Product::Rust => &[&languages::RUST],
+            Product::TypeScript => &[&languages::TYPESCRIPT],
+            Product::Python => &[&languages::PYTHON],
+            Product::Kotlin => &[&languages::KOTLIN, &languages::JAVA],
+            Product::Cpp => &[&languages::CPP],
+            Product::Markdown | Product::Vectors | Product::Schema | Product::Wireshark => &[],
+        };
+        languages.iter().map(|it| self.naming(it)).collect()
     }
 
     /// Returns the directory of a product, if the project has it.
@@ -294,27 +293,17 @@ impl Targets {
         settings.map_or(CRATE, |settings| &settings.krate)
     }
 
-    /// Returns the naming rules of the Rust package.
+    /// Returns the naming rules of a language in this project.
     #[must_use]
-    pub fn rust(&self) -> &'static languages::Language {
+    pub fn naming(&self, language: &'static languages::Language) -> &'static languages::Language {
         if self.newtypes {
-            &languages::RUST_WITH_IDS
+            language.with_ids()
         } else {
-            &languages::RUST
+            language
         }
     }
 
-    /// Returns the naming rules of the Python package.
-    #[must_use]
-    pub fn python(&self) -> &'static languages::Language {
-        if self.newtypes {
-            &languages::PYTHON_WITH_IDS
-        } else {
-            &languages::PYTHON
-        }
-    }
-
-    /// Returns `true` if Rust and Python have a type for the IDs of each entity.
+    /// Returns `true` if the packages have a type for the IDs of each entity.
     #[must_use]
     pub fn has_id_types(&self) -> bool {
         self.newtypes
@@ -410,7 +399,11 @@ impl WrittenTarget {
             ("crate", self.krate.is_some() && product != Product::Rust),
             (
                 "newtypes",
-                self.newtypes.is_some() && !matches!(product, Product::Rust | Product::Python),
+                self.newtypes.is_some()
+                    && matches!(
+                        product,
+                        Product::Markdown | Product::Vectors | Product::Schema
+                    ),
             ),
             // The spec language is the same for every audience.
             (

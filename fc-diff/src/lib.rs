@@ -41,7 +41,7 @@ use fc_spec::model::Model;
 /// Settings of a project that change its generated packages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Packages {
-    /// `true` if Rust and Python have an ID type for each entity: `newtypes: true` in `fc.yaml`.
+    /// `true` if the packages have an ID type for each entity: `newtypes: true` in `fc.yaml`.
     pub id_types: bool,
 }
 

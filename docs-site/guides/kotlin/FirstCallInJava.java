@@ -2,17 +2,20 @@
 
 import fc.Client;
 import fc.Fc;
+import fc.GetRobotSnRequest;
 import fc.GetRobotSnResponse;
 import fc.GetRobotSnResponseData;
-import fc.Operations;
+import fc.PartialAsyncRobot;
 import fc.RechargeError;
 import fc.RechargeProgress;
 import fc.RechargeProgressData;
 import fc.RechargeStatus;
 import fc.Reporter;
+import fc.RobotKt;
 import fc.runtime.Audience;
 import fc.runtime.CallError;
 import fc.runtime.ClientConfig;
+import fc.runtime.Context;
 import fc.runtime.Server;
 import fc.runtime.ServerConfig;
 import fc.runtime.Service;
@@ -24,13 +27,18 @@ public final class FirstCallInJava {
     private FirstCallInJava() {}
 
     // #region robot
-    private static Service robot() {
-        return new Service().onAsync(Operations.getRobotSn, (context, request) -> {
+    private static final class Mine implements PartialAsyncRobot {
+        @Override
+        public CompletableFuture<GetRobotSnResponse> getRobotSn(Context context, GetRobotSnRequest request) {
             GetRobotSnResponseData data =
                     GetRobotSnResponseData.builder().robotSn("100132007654321").build();
             GetRobotSnResponse response = GetRobotSnResponse.builder().data(data).build();
             return CompletableFuture.completedFuture(response);
-        });
+        }
+    }
+
+    private static Service robot() {
+        return RobotKt.service(new Mine());
     }
     // #endregion robot
 

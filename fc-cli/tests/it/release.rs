@@ -261,7 +261,7 @@ fn refers_changed_breaks_sources_with_newtypes() {
         run.stdout.contains("FC0775 get_level.response.scene: "),
         "{run:#?}"
     );
-    assert!(run.stdout.contains("sources in Rust, Python"), "{run:#?}");
+    assert!(run.stdout.contains("sources in Rust, Kotlin"), "{run:#?}");
 }
 
 #[test]

@@ -9,7 +9,6 @@ use crate::package::expr::{Expressions, Record};
 use crate::package::items::{Call, Spelled};
 use crate::package::language::Language;
 use crate::sample::Profile;
-use crate::target::Targets;
 use fc_spec::model::{Direction, Kind, Operation, Side};
 
 /// The width of a line on a page, in columns. A page is narrower than a file.
@@ -22,7 +21,7 @@ pub struct Shown {
     /// The file with all samples, relative to the product's root.
     pub file: &'static str,
     /// The rules for names.
-    pub language: fn(&Targets) -> &'static Language,
+    pub language: &'static Language,
     /// The style on a page.
     pub style: &'static Style,
     /// Writes a sample.

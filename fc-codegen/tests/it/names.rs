@@ -5,9 +5,7 @@
 
 use crate::good_spec;
 use fc_codegen::package::items::clashes;
-use fc_codegen::package::language::{
-    CPP, JAVA, KOTLIN, Language, PYTHON, RUST, RUST_WITH_IDS, Role, TYPESCRIPT,
-};
+use fc_codegen::package::language::{CPP, JAVA, KOTLIN, Language, PYTHON, RUST, Role, TYPESCRIPT};
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::index::definitions;
 use fc_spec::load::load;
@@ -156,7 +154,7 @@ types:
     let loaded = load(&sources, &mut faults);
     let model = loaded.model().expect("it has no errors");
     assert_eq!(clashes(&model, &[&RUST]), []);
-    let found = clashes(&model, &[&RUST_WITH_IDS]);
+    let found = clashes(&model, &[RUST.with_ids()]);
     let found: Vec<String> = found.iter().map(ToString::to_string).collect();
     assert_eq!(
         found,

@@ -350,7 +350,7 @@ impl Judge<'_> {
     /// Returns the languages in which the ID type of a field changes.
     pub(super) fn id_type_changed(&self, old: &Field, new: &Field) -> Vec<Language> {
         if self.packages.id_types && id_type(old) != id_type(new) {
-            vec![Language::Rust, Language::Python]
+            rules::REFERENCE.source.to_vec()
         } else {
             Vec::new()
         }

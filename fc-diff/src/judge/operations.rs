@@ -100,8 +100,6 @@ impl<'m> Judge<'m> {
         if old.kind() != new.kind() || old.sender != new.sender {
             let of = |it: &Operation| format!("{} / {}", it.kind().name(), it.sender.name());
             let finding = Finding::new(&rules::KIND_CHANGED, name, both(&[of(old), of(new)]));
-            let is_stream = old.kind() == Kind::Stream && new.kind() == Kind::Stream;
-            let finding = finding.source(unless(&rules::KIND_CHANGED, is_stream));
             self.report(at(finding).on(Senders::BOTH, Wire::Both));
             for key in [
                 "kind",
@@ -167,7 +165,6 @@ impl<'m> Judge<'m> {
                     format!("{name}.{}", Direction::Request.name()),
                     both(&values),
                 );
-                let finding = finding.source(unless(&TYPE_CHANGED, is_json(&other.content)));
                 self.report(at(finding).on(senders, wire));
                 self.claim(&["operations", name, "content"]);
                 self.claim(&["operations", name, Direction::Request.name()]);
@@ -375,12 +372,4 @@ pub(super) fn asked_by(operation: &Operation, rule: &Rule) -> Vec<Language> {
     };
     let source = rule.source.iter().copied();
     source.filter(|it| matched.contains(it)).collect()
-}
-
-/// Returns the languages of a rule. C++ has no methods for streams, so `true` leaves it out.
-fn unless(rule: &Rule, is_without_cpp: bool) -> Vec<Language> {
-    let source = rule.source.iter().copied();
-    source
-        .filter(|it| !is_without_cpp || *it != Language::Cpp)
-        .collect()
 }

@@ -257,15 +257,15 @@ rules! {
     REFERENCE {
         number: 75,
         name: "reference-changed",
-        source: &[Rust, Python],
+        source: EVERY,
         behaviour: true,
         silent: true,
         mirror: &[75],
         title: ["a field has the ID of something else", "字段改为另一种实体的 ID"],
         text: [
             "The receiver takes the ID for that of another entity, and no error occurs. With `newtypes: true` in `fc.yaml`, the \
-             type of the field changes in Rust and Python. If the entity was only renamed, the behaviour is the same.",
-            "接收方会把 ID 当作另一种实体的 ID，不会报错。若 `fc.yaml` 中设置了 `newtypes: true`，Rust 和 Python 中字段的类型会变。只是实体改名时，行为不变。",
+             type of the field changes in every package. If the entity was only renamed, the behaviour is the same.",
+            "接收方会把 ID 当作另一种实体的 ID，不会报错。若 `fc.yaml` 中设置了 `newtypes: true`，各个包中字段的类型会变。只是实体改名时，行为不变。",
         ],
     }
     REUSED {

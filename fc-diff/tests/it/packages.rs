@@ -11,19 +11,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::sync::OnceLock;
 
-/// Generates the packages of a project. With ID types these are Rust and Python only, because the others are the same.
+/// Generates the packages of a project.
 fn packages(model: &Model, id_types: bool) -> BTreeMap<Language, Declared> {
-    let targets = if id_types {
-        Targets::of([Product::Rust, Product::Python]).with_newtypes()
-    } else {
-        Targets::of([
-            Product::Rust,
-            Product::TypeScript,
-            Product::Python,
-            Product::Kotlin,
-            Product::Cpp,
-        ])
-    };
+    let all = Targets::of([
+        Product::Rust,
+        Product::TypeScript,
+        Product::Python,
+        Product::Kotlin,
+        Product::Cpp,
+    ]);
+    let targets = if id_types { all.with_newtypes() } else { all };
     declared(&generate(model, &targets).expect("every package can be made"))
 }
 
@@ -262,7 +259,17 @@ fn entity_renamed_breaks_sources_only() {
     let [old, new] = [&base, &renamed].map(|it| model(it).expect("a spec"));
     for (id_types, expected) in [
         (false, Vec::new()),
-        (true, vec![Language::Rust, Language::Python]),
+        (
+            true,
+            vec![
+                Language::Rust,
+                Language::Kotlin,
+                Language::JvmBinary,
+                Language::Cpp,
+                Language::Python,
+                Language::Typescript,
+            ],
+        ),
     ] {
         let found = diff_for(&old, &new, Packages { id_types });
         let source: Vec<Language> = found

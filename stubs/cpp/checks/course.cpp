@@ -46,6 +46,50 @@ int call_all() {
   return commands;
 }
 
+/// The facts of operations as data.
+void facts() {
+  const auto& known = odd_line::protocol();
+  const auto* drive = known.find(fc_runtime::OperationKind::Command,
+                                 fc_runtime::Command<odd_line::DriveRequest>::code);
+  check(drive && drive->preconditions && !drive->preconditions->any_state, "conditions");
+  const auto& states = drive->preconditions->states;
+  check(states.size() == 1 && states[0].type == "Going" && states[0].values.size() == 2, "states");
+  check(drive->preconditions->after.size() == 1, "a command that comes first");
+  const auto* went =
+      known.find(fc_runtime::OperationKind::Report, fc_runtime::Report<odd_line::Went>::code);
+  check(went && went->cadence && went->cadence->kind == fc_runtime::CadenceKind::OnChange &&
+            went->cadence->field == "going",
+        "the time of a report");
+}
+
+/// The streams of both sides, through their methods.
+void streams() {
+  fc_runtime::ServerConfig robot;
+  robot.address = "127.0.0.1";
+  robot.command_port = std::uint16_t{0};
+  robot.data_port = std::uint16_t{0};
+  const auto server = *fc_runtime::Server::bind(
+      odd_line::protocol(), odd_line::service(std::make_shared<odd_line::ExampleRobot>()), robot);
+  fc_runtime::ClientConfig app;
+  app.host = "127.0.0.1";
+  app.command_port = server.command_port();
+  app.data_port = server.data_port();
+  const auto client = *odd_line::Client::connect(app);
+  const odd_line::Streams streams(client.data());
+  const auto lists = streams.subscribe_lists();
+  check(bool(streams.data().connected()), "the data port");
+  const auto wait = std::chrono::seconds(60);
+  check(!server.next_stream(std::chrono::seconds(0)), "nothing yet");
+  check(bool(streams.send_print(3, "bytes")), "the app sends");
+  const auto print = server.next_stream(wait);
+  check(print && print->frame.data == "bytes", "the robot receives");
+  const odd_line::Streamer streamer(server);
+  check(bool(streamer.send_lists(std::nullopt, 4, fc_runtime::example<odd_line::Lists>())),
+        "the robot sends");
+  const auto item = lists.next(wait);
+  check(item && item->id == 4 && item->content.str == "a", "the app receives its type");
+}
+
 void said() {
   using Going = odd_line::Going::Value;
   auto request = fc_runtime::example<odd_line::DriveRequest>();
@@ -83,6 +127,8 @@ void said() {
 
 int main() {
   check(call_all() > 70, "there are commands");
+  facts();
+  streams();
   said();
   return failed == 0 ? 0 : 1;
 }

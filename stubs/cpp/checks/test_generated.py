@@ -31,10 +31,11 @@ def run(*command: object, folder: Path | None = None) -> tuple[bool, str]:
 class Project:
     """A spec in its own folder, with its generated package."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, options: str = "") -> None:
         self.folder = Path(tempfile.mkdtemp())
         self.generated = self.folder / "out/generated"
-        (self.folder / "fc.yaml").write_text("targets: { cpp: { out: out } }\n", encoding="utf-8")
+        config = f"targets: {{ cpp: {{ out: out{options} }} }}\n"
+        (self.folder / "fc.yaml").write_text(config, encoding="utf-8")
         shutil.copytree(ROOT / f"fc-generated/tests/{name}/spec", self.folder / "spec")
 
     def generate(self) -> None:
@@ -128,6 +129,36 @@ class Package(unittest.TestCase):
                 vectors = ROOT / f"fc-generated/tests/{name}/vectors"
                 self.runs(project, package, PACKAGE / "tests/vectors.cpp", vectors, least)
                 self.runs(project, package, project.folder / "out/tests/samples.cpp")
+
+
+    def test_ids_travel_as_their_values_and_do_not_mix(self) -> None:
+        project = Project("meter", ", newtypes: true")
+        self.addCleanup(project.remove)
+        project.generate()
+        style = f"--style=file:{PACKAGE / '.clang-format'}"
+        headers = sorted(project.generated.glob("include/**/*.hpp"))
+        ok, text = run("clang-format", style, "--dry-run", "-Werror", *headers)
+        self.assertTrue(ok, text)
+        package = self.package(project, 4)
+        shim = project.generated / "include/fc/protocol.hpp"
+        shim.parent.mkdir(parents=True)
+        shim.write_text('#include "meter/protocol.hpp"\nnamespace fc = meter;\n', encoding="utf-8")
+        vectors = ROOT / "fc-generated/tests/meter/vectors"
+        self.runs(project, package, PACKAGE / "tests/vectors.cpp", vectors, 300)
+        self.runs(project, package, project.folder / "out/tests/samples.cpp")
+        user = project.folder / "ids.cpp"
+        program = """#include <unordered_set>
+#include "meter/client.hpp"
+std::unordered_set<meter::TariffId> seen;
+bool is_new(meter::SetTariffRequest& request) {{
+  request.tariff = {};
+  return seen.insert(request.tariff_or_default()).second && meter::OperatorId("a") < meter::OperatorId("b");
+}}
+"""
+        for value, is_right in (("meter::TariffId(3)", True), ("3", False), ('meter::OperatorId("3")', False)):
+            user.write_text(program.format(value), encoding="utf-8")
+            ok, text = project.compile("-fsyntax-only", user)
+            self.assertEqual(ok, is_right, text)
 
 
 class Readme(unittest.TestCase):

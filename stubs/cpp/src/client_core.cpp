@@ -268,9 +268,10 @@ std::optional<BodyError> ClientCore::check_report(std::uint16_t code, std::strin
 
 void ClientCore::note_beat(std::uint16_t code, Instant now) {
   const OperationInfo* known = protocol_->find(OperationKind::Report, code);
-  if (known == nullptr || !known->interval) return;
+  if (known == nullptr || !known->cadence || known->cadence->kind != CadenceKind::Every) return;
+  const auto interval = known->cadence->time;
   const auto [last, is_first] = beats_.emplace(code, now);
-  if (!is_first && now - last->second > *known->interval + *known->interval / 2) {
+  if (!is_first && now - last->second > interval + interval / 2) {
     ++counters_->reports_late;
   }
   last->second = now;

@@ -305,6 +305,45 @@ void subscriptions(Tally& tally) {
   tally.check(!closed && name(closed.error().kind) == "closed", "a subscription ends");
 }
 
+/// Streams whose content is a message, and the states of the data connection.
+void stream_contents(Tally& tally) {
+  const auto server = *Server::bind(protocol(), service(), free_ports());
+  const Connection app = connected(server);
+  tally.check(bool(app.call(Echo{"", {}})), "it is connected");
+  const auto data = app.data();
+  auto states = data.states();
+  const auto moves = data.subscribe_json<Go>(9);
+  tally.check(bool(data.connected()), "the data port");
+  tally.check(data.state().status == fc_runtime::ConnectionStatus::Connected, "its state");
+  tally.check(!server.next_stream(milliseconds(0)), "nothing yet");
+  tally.check(data.send_json(7, 1, Go{5, {}}) && !data.send_json(7, 2, Go{}),
+              "a message is checked before it is sent");
+  const auto at_robot = server.next_stream(kPatience);
+  tally.check(at_robot && at_robot->frame.data == R"({"metres":5})", "the robot gets it as JSON");
+  const auto unset = server.send_stream_json(std::nullopt, 9, 1, Go{});
+  tally.check(!unset && unset.error().body && unset.error().body->path == "metres",
+              "the robot checks it too");
+  tally.check(server.send_stream_json(std::nullopt, 9, 2, Go{6, {}}) &&
+                  server.send_stream(std::nullopt, 9, 3, R"({"metres":"far"})") &&
+                  server.send_stream_json(std::nullopt, 9, 4, Go{7, {}}),
+              "the robot sends");
+  const auto first = moves.next(kPatience);
+  tally.check(first && first->id == 2 && first->content.metres == 6, "a frame is read");
+  const auto wrong = moves.next(kPatience);
+  tally.check(!wrong && name(wrong.error().kind) == "invalid_content" &&
+                  to_string(wrong.error()).find("wrong_type at `metres`") != std::string::npos,
+              "a frame that does not read is an error");
+  const auto next = moves.next(kPatience);
+  tally.check(next && next->content.metres == 7 && moves.missed() == 0, "the next one is read");
+  app.close();
+  auto last = states.next(kPatience);
+  while (last && last->status != fc_runtime::ConnectionStatus::Closed) {
+    last = states.next(kPatience);
+  }
+  tally.check(last && last->connects == 1 && last->why.kind == fc_runtime::LossKind::Here,
+              "the last state has the reason");
+}
+
 /// Allowed networks and commands.
 void allowed(Tally& tally) {
   ServerConfig config = free_ports();
@@ -795,9 +834,10 @@ void handler_timeout(Tally& tally) {
 
 int main() {
   Tally tally;
-  for (const auto test : {calls, compressed, reports, streams, subscriptions, allowed, losses,
-                          stalls, hostile, silent, handler_errors, callbacks_throw, log_flood,
-                          memory, gone, abandoned, settings, shutdown, handler_timeout}) {
+  for (const auto test :
+       {calls,  compressed, reports,   streams,  subscriptions,  stream_contents, allowed,
+        losses, stalls,     hostile,   silent,   handler_errors, callbacks_throw, log_flood,
+        memory, gone,       abandoned, settings, shutdown,       handler_timeout}) {
     test(tally);
   }
   return tally.outcome("things over TCP", 300);

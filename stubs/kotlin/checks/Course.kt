@@ -53,6 +53,8 @@ fun main(): Unit = runBlocking {
     val why = runCatching { DriveRequest.builder().mood(Going.STEPS).secret("s").checked() }.exceptionOrNull()
     check(why is ConditionError) { "$why" }
     check(Operations.drive.isAcceptedIn(Going.STEPS) && !Operations.drive.isAcceptedIn(Going.NAME))
+    val conditions = checkNotNull(Operations.drive.preconditions)
+    check(conditions.after.size == 1 && conditions.states.size == 2 && !conditions.isAnyState) { conditions.after }
     check(Going.NAME.mayFollow(Going.STEPS) && !Going.VALUE.mayFollow(Going.STEPS) && Going.COMPANION.isError)
     check(StrType.TEXTS.name == "TEXTS" && StrType.of(9).name == null)
     val here = Here.fromJson("{\"there\":[{\"either\":{\"far\":1},\"going\":\"z\"}]}")

@@ -3,7 +3,7 @@
 /** The default values of these fields of a message. */
 export type DefaultsOf<Message, Name extends keyof Message> = {
   /** Default of each field. */
-  readonly [Key in Name]: Exclude<Message[Key], undefined>
+  readonly [Key in Name]-?: Exclude<Message[Key], undefined>
 }
 
 /** Returns a copy of the message with defaults in place of absent fields. The message does not change. */

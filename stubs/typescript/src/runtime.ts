@@ -9,6 +9,7 @@ export { bytesOf, toJson, writeEnveloped } from './write.ts'
 export { BodyError } from './fault.ts'
 export type { BodyErrorKind, OwnLimit } from './fault.ts'
 export type { ErrorName } from './errors.ts'
+export type { Id } from './id.ts'
 export type { Allowance } from './scanner.ts'
 export { Session } from './session.ts'
 export type {

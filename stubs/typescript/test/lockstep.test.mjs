@@ -4,7 +4,7 @@ import assert from 'node:assert/strict'
 import { writeFileSync } from 'node:fs'
 import path from 'node:path'
 import { test } from 'node:test'
-import { compile, generate, packageOf, replaced, unlessGenerated } from './packages.mjs'
+import { compile, generate, load, packageOf, replaced, unlessGenerated } from './packages.mjs'
 
 /** A program that uses the meter. */
 const PROGRAM = `
@@ -96,4 +96,31 @@ export const code: number | null = commands.tellTime.code
 `
   writeFileSync(path.join(folder, 'program.ts'), program)
   assert.equal(compile(folder), '')
+})
+
+test('ids_are_sent_as_their_values_and_do_not_mix', { skip: unlessGenerated }, async () => {
+  const folder = packageOf('ids', 'meter', (text) => text)
+  writeFileSync(path.join(folder, 'fc.yaml'), 'targets: { typescript: { out: generated, newtypes: true } }\n')
+  generate(folder)
+  const program = (tariff) => `
+import { Band, OperatorId, TariffId, defaults, schemas, toJson } from './generated/index.ts'
+import type { SetTariffRequest } from './generated/index.ts'
+export const operator: OperatorId = OperatorId('anna')
+export const usual: TariffId = defaults.SetTariffRequest.tariff
+export const request: SetTariffRequest = { band: Band.Day, price: 3, note: 'x', tariff: ${tariff} }
+export const text: string = toJson(schemas.SetTariffRequest, request)
+`
+  for (const [tariff, said] of [
+    ['3', "'number' is not assignable to type 'TariffId'"],
+    ['operator', "'OperatorId' is not assignable to type 'TariffId'"],
+    ['TariffId(3)', ''],
+  ]) {
+    writeFileSync(path.join(folder, 'program.ts'), program(tariff))
+    const found = compile(folder)
+    if (said === '') assert.equal(found, '')
+    else assert.ok(found.includes(said), found)
+  }
+  const { text, usual } = await load(folder, 'program.js')
+  assert.equal(JSON.parse(text).tariff, '3')
+  assert.equal(usual, 7)
 })

@@ -2,12 +2,11 @@
 //!
 //! C++17 cannot name the fields of a struct in one expression.
 
-use super::tables::spelled_in;
-use super::types::name_in;
+use super::tables::{item_of, spelled_in};
+use super::types::field_type_in;
 use crate::package::context::Context;
 use crate::package::expr::{Expr, Record};
 use crate::package::source::Source;
-use fc_spec::model::Type;
 use std::collections::BTreeSet;
 
 /// The statements that fill a struct with the values of a constant.
@@ -79,13 +78,14 @@ impl<'c, 'm> Assignments<'c, 'm> {
             if let Some(value) = value {
                 let name = &field.name;
                 let place = format!("{path}.{name}");
-                self.held(&place, name, &field.ty, field.optional, value);
+                let ty = field_type_in(self.context, self.space, field);
+                self.held(&place, name, &ty, field.optional, value);
             }
         }
     }
 
-    /// Adds the statements that fill `place`. `name` is the base of new variables.
-    fn held(&mut self, place: &str, name: &str, ty: &Type, optional: bool, value: &Expr<'_>) {
+    /// Adds the statements that fill `place`, which has the C++ type `ty`. `name` is the base of new variables.
+    fn held(&mut self, place: &str, name: &str, ty: &str, optional: bool, value: &Expr<'_>) {
         match value {
             Expr::Record(record) if optional => {
                 self.inside(&format!("{place}.emplace()"), name, record);
@@ -110,11 +110,8 @@ impl<'c, 'm> Assignments<'c, 'm> {
         }
     }
 
-    fn list(&mut self, place: &str, name: &str, ty: &Type, optional: bool, items: &[Expr<'_>]) {
-        let inner = match ty {
-            Type::Array(item) => item,
-            other => other,
-        };
+    fn list(&mut self, place: &str, name: &str, ty: &str, optional: bool, items: &[Expr<'_>]) {
+        let inner = item_of(ty);
         let has_fields =
             |it: &Expr<'_>| matches!(it, Expr::Record(_) | Expr::Choice(..) | Expr::List(_));
         if !items.iter().any(has_fields) {
@@ -140,11 +137,10 @@ impl<'c, 'm> Assignments<'c, 'm> {
     }
 
     /// Adds an assignment of items that fit a line. An empty list that is required needs no statement.
-    fn filled(&mut self, place: &str, ty: &Type, optional: bool, items: Vec<String>) {
+    fn filled(&mut self, place: &str, ty: &str, optional: bool, items: Vec<String>) {
         if optional {
-            let open = name_in(self.context, self.space, ty);
-            self.statements
-                .push(Statement::List(place.to_owned(), open, items));
+            let list = Statement::List(place.to_owned(), ty.to_owned(), items);
+            self.statements.push(list);
         } else if !items.is_empty() {
             self.statements
                 .push(Statement::List(place.to_owned(), String::new(), items));

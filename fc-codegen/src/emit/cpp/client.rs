@@ -4,6 +4,7 @@
 
 use super::groups::{NamedGroup, with_commands, with_reports};
 use super::layout::{Includes, header_file, literal, source_file};
+use super::streams;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::facts;
@@ -26,6 +27,8 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
         for calls in with_commands(groups, "Calls") {
             out.line(format!("extern template class {calls}<Client>;"));
         }
+        out.blank();
+        streams::for_app(out, groups);
         out.blank();
         each(out, groups);
     })

@@ -227,7 +227,7 @@ fn asks(
 ) -> String {
     let holds = condition.fields.iter().map(|(other, values)| {
         let each = values.iter().map(|wire| {
-            let value = expressions.value(&other.ty, &Value::from(wire));
+            let value = expressions.held(other, &Value::from(wire));
             format!("message.{} == {}", other.name, compared(space, &value))
         });
         let each: Vec<String> = each.collect();
@@ -263,6 +263,7 @@ fn compared(space: &str, value: &Expr<'_>) -> String {
             (_, Expr::Text(text)) => format!("{space}::{}({})", item.ty.name, literal(text)),
             _ => "{}".to_owned(),
         },
+        Expr::Id(id, value) => format!("{space}::{id}({})", compared(space, value)),
         Expr::Bool(value) => value.to_string(),
         Expr::Int(value) => integer(*value),
         Expr::Text(text) => literal(text),

@@ -4,7 +4,7 @@
 
 use super::layout::Includes;
 use super::types::{Header, namespace};
-use super::{client, protocol, robot};
+use super::{client, protocol, robot, streams};
 use crate::package::context::Context;
 use crate::package::group::Group;
 use crate::package::items::Package;
@@ -73,13 +73,21 @@ pub fn groups<'p, 'm>(context: &'p Context<'m>) -> Vec<NamedGroup<'p, 'm>> {
 
 /// Returns the names of a part, for the groups that have commands.
 pub fn with_commands(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
-    let groups = groups.iter().filter(|group| !group.commands.is_empty());
-    groups.map(|group| group.named(part)).collect()
+    parts(groups, part, |group| !group.commands.is_empty())
 }
 
 /// Returns the names of a part, for the groups that have reports.
 pub fn with_reports(groups: &[NamedGroup<'_, '_>], part: &str) -> Vec<String> {
-    let groups = groups.iter().filter(|group| !group.reports.is_empty());
+    parts(groups, part, |group| !group.reports.is_empty())
+}
+
+/// Returns the names of a part, for the groups that have it.
+pub fn parts(
+    groups: &[NamedGroup<'_, '_>],
+    part: &str,
+    has: impl Fn(&Group<'_, '_>) -> bool,
+) -> Vec<String> {
+    let groups = groups.iter().filter(|group| has(group));
     groups.map(|group| group.named(part)).collect()
 }
 
@@ -127,6 +135,22 @@ pub fn declare(
                 includes.own("fc_runtime/push.hpp");
                 includes.own("fc_runtime/types.hpp");
                 robot::reporters(out, context, group);
+                out.blank();
+            }
+            if !group.streams.is_empty() {
+                for name in [
+                    "cstddef",
+                    "cstdint",
+                    "optional",
+                    "string",
+                    "string_view",
+                    "utility",
+                ] {
+                    includes.standard(name);
+                }
+                includes.own("fc_runtime/data.hpp");
+                includes.own("fc_runtime/push.hpp");
+                streams::parts(out, context, group);
                 out.blank();
             }
             client::lists(out, group);

@@ -3,10 +3,11 @@
 //! Message types are structs, enums and choices.
 
 use super::groups::{self, NamedGroup};
+use super::ids;
 use super::layout::{CPP, Includes, integer, literal};
 use super::process;
 use super::tables;
-use super::types::{Header, integer_type, name_of, namespace};
+use super::types::{Header, field_type, integer_type, namespace};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
@@ -116,7 +117,10 @@ fn structure(
             let condition = sentence(&expressions, field, fields, spelled);
             out.docs(&facts::field_docs(&CPP, field, condition));
             used(includes, &field.ty);
-            let mut ty = name_of(context, &field.ty);
+            let mut ty = field_type(context, field);
+            if context.package.id_of(field).is_some() {
+                includes.own(ids::path(context));
+            }
             if field.optional {
                 includes.standard("optional");
                 ty = format!("std::optional<{ty}>");
@@ -135,9 +139,9 @@ fn structure(
             let Some(default) = field.details().default.as_ref().filter(|_| field.optional) else {
                 continue;
             };
-            let ty = name_of(context, &field.ty);
+            let ty = field_type(context, field);
             let value = expressions.held(field, &Value::from(default));
-            let value = tables::spelled(context, &value, &field.ty);
+            let value = tables::spelled_in(context, "", &value, &ty);
             let name = &field.name;
             out.blank();
             out.docs(&Docs::line([

@@ -7,12 +7,14 @@ mod assignments;
 mod client;
 mod fields;
 mod groups;
+mod ids;
 mod layout;
 mod messages;
 mod process;
 mod protocol;
 mod robot;
 pub mod samples;
+mod streams;
 mod tables;
 mod types;
 
@@ -28,7 +30,8 @@ const SOURCES: &str = "sources.cmake";
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, &CPP, &layout::CPP).of_target(targets, Product::Cpp);
+    let context =
+        &Context::new(model, targets.naming(&CPP), &layout::CPP).of_target(targets, Product::Cpp);
     let space = &types::namespace(context);
     let groups = &groups::groups(context);
     let (headers, homes) = types::headers(context);
@@ -54,6 +57,12 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ),
         ("src/robot.cpp".to_owned(), robot::source(context, groups)),
     ];
+    if !context.package.ids.is_empty() {
+        files.push((
+            format!("include/{}", ids::path(context)),
+            ids::header(context),
+        ));
+    }
     let has_tables = !context.package.tables.is_empty();
     if has_tables {
         files.push((

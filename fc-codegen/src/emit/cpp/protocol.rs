@@ -1,7 +1,7 @@
 //! The protocol as a value: header, envelopes, result codes, ports, limits and operations.
 
 use super::groups::NamedGroup;
-use super::layout::{Includes, header_file, integer, literal, source_file};
+use super::layout::{Includes, float, header_file, integer, literal, source_file};
 use super::types::namespace;
 use crate::package::about;
 use crate::package::context::{Context, page_of};
@@ -12,8 +12,8 @@ use crate::package::language::Case;
 use crate::package::source::Source;
 use crate::package::wire::{FrameFacts, WireFacts};
 use fc_spec::model::{
-    Cadence, DigestAlgorithm, Direction, Effect, EnvelopeField, Exchange, HeaderField, HeaderRole,
-    Operation, Type,
+    AcceptedIn, Cadence, DigestAlgorithm, Direction, Effect, EnvelopeField, Exchange, HeaderField,
+    HeaderRole, Operation, Type,
 };
 
 /// Generates `protocol.hpp`.
@@ -274,20 +274,57 @@ fn operation_info(out: &mut Source, context: &Context<'_>, operation: &Operation
         }
         _ => "std::nullopt".to_owned(),
     };
-    let interval = match operation.cadence() {
-        Some(Cadence::EveryMs(ms)) => format!("std::chrono::milliseconds({ms})"),
-        _ => "std::nullopt".to_owned(),
-    };
+    let or_none = |it: Option<String>| it.unwrap_or_else(|| "std::nullopt".to_owned());
+    let preconditions = or_none(preconditions(context, operation));
+    let cadence = or_none(operation.cadence().map(cadence));
     let body = |direction| match operation.body(direction) {
         Some(body) => format!("fc_runtime::type_info<{}>()", context.name_of(&body.ty)),
         None => "std::nullopt".to_owned(),
     };
     out.line(format!(
-        "operations.push_back({{{}, {code}, fc_runtime::OperationKind::{kind}, fc_runtime::Effect::{effect}, {}, {}, {ack}, {interval}, {}, {}}});",
+        "operations.push_back({{{}, {code}, fc_runtime::OperationKind::{kind}, fc_runtime::Effect::{effect}, {}, {}, {ack}, {preconditions}, {cadence}, {}, {}}});",
         literal(&operation.name),
         literal(&operation.title.zh),
         literal(&operation.title.en),
         body(Direction::Request),
         body(Direction::Response)
     ));
+}
+
+/// Returns the conditions under which a command is accepted.
+fn preconditions(context: &Context<'_>, command: &Operation) -> Option<String> {
+    let accepted = command.accepted()?;
+    let states = context.accepted_states(command);
+    let states = states.iter().map(|states| {
+        let values = states.values.iter();
+        let values: Vec<String> = values.map(|value| literal(&value.name)).collect();
+        format!(
+            "{{{}, {{{}}}}}",
+            literal(&states.item.ty.of.name),
+            values.join(", ")
+        )
+    });
+    let states: Vec<String> = states.collect();
+    let is_any = matches!(accepted.states, Some(AcceptedIn::Any));
+    let after: Vec<String> = accepted.after.iter().map(|name| literal(name)).collect();
+    Some(format!(
+        "fc_runtime::Preconditions{{{is_any}, {{{}}}, {{{}}}}}",
+        states.join(", "),
+        after.join(", ")
+    ))
+}
+
+/// Returns the time at which a report is sent.
+fn cadence(cadence: &Cadence) -> String {
+    let ms = |ms: &u32| format!("{{}}, 0, std::chrono::milliseconds({ms})");
+    let (kind, rest) = match cadence {
+        Cadence::OnChange(field) => ("OnChange", format!("{}, 0, {{}}", literal(field))),
+        Cadence::Step(step) => {
+            let by = float(step.by.to_f64());
+            ("Step", format!("{}, {by}, {{}}", literal(&step.field)))
+        }
+        Cadence::EveryMs(every) => ("Every", ms(every)),
+        Cadence::WithinMs(within) => ("Within", ms(within)),
+    };
+    format!("fc_runtime::Cadence{{fc_runtime::CadenceKind::{kind}, {rest}}}")
 }

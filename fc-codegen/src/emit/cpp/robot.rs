@@ -4,6 +4,7 @@
 
 use super::groups::{NamedGroup, with_commands, with_reports};
 use super::layout::{Includes, header_file, source_file};
+use super::streams;
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -33,6 +34,8 @@ pub fn header(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
         out.line("[[nodiscard]] fc_runtime::Service service(std::shared_ptr<Robot> robot);");
         out.blank();
         reporter(out, groups);
+        out.blank();
+        streams::for_robot(out, groups);
     })
 }
 

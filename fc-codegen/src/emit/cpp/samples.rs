@@ -27,7 +27,7 @@ pub const FILE: &str = "tests/samples.cpp";
 pub const SHOWN: Shown = Shown {
     fence: "cpp",
     file: FILE,
-    language: |_| &LANGUAGE,
+    language: &LANGUAGE,
     style: &ON_PAGES,
     write: |out, context, sample| Writer::new(context).write(out, sample, &Meanwhile::default()),
 };
@@ -128,23 +128,19 @@ if (!pushed) {
 }",
                 );
             }
-            Sample::Subscribe(stream) => {
-                assign(out, "const auto code", &self.code(stream));
-                out.line("const auto frames = data.subscribe(code);");
-                out.line(meanwhile.receives);
-                let head = format!("while (const auto frame = frames.next({PATIENCE}))");
-                out.block(head, |out| self.frame(out, stream, meanwhile.received));
-            }
+            Sample::Subscribe(stream) => self.subscribe(out, stream, meanwhile),
             Sample::Send(stream, value) => {
-                assign(out, "const auto code", &self.code(stream));
                 let content = self.content(out, value.as_ref());
-                out.line(format!("const auto sent = data.send(code, 1, {content});"));
+                let send = format!("streams.send_{}(1, {content})", stream.of.name);
+                assign(out, "const auto sent", &send);
                 out.line("if (!sent) std::cerr << to_string(sent.error()) << '\\n';");
             }
             Sample::Stream(stream, value) => {
-                assign(out, "const auto code", &self.code(stream));
                 let content = self.content(out, value.as_ref());
-                let send = format!("server.send_stream(std::nullopt, code, 1, {content})");
+                let send = format!(
+                    "streamer.send_{}(std::nullopt, 1, {content})",
+                    stream.of.name
+                );
                 assign(out, "const auto taken", &send);
                 let taken = "*taken << \" data connections took it\\n\"";
                 either(out, "taken", taken, "", "to_string(taken.error())");
@@ -152,23 +148,24 @@ if (!pushed) {
         }
     }
 
-    /// Prints a frame of a stream, followed by the line `more`.
-    fn frame(&self, out: &mut Source, stream: &Operation, more: &str) {
-        let Some(content) = self.context.content(stream) else {
-            out.line("std::cout << frame->id << \": \" << frame->data.size() << \" bytes\\n\";");
-            out.line(more);
-            return;
+    fn subscribe(
+        &self,
+        out: &mut Source,
+        stream: &Spelled<'_, Operation>,
+        meanwhile: &Meanwhile<'_>,
+    ) {
+        let subscribe = format!("streams.subscribe_{}()", stream.of.name);
+        assign(out, "const auto frames", &subscribe);
+        out.line(meanwhile.receives);
+        let shown = match self.context.content(stream) {
+            Some(_) => "frame->content << '\\n'",
+            None => "frame->data.size() << \" bytes\\n\"",
         };
-        let space = &self.space;
-        let read = format!("fc_runtime::from_json<{space}{content}>(frame->data)");
-        assign(out, "const auto content", &read);
-        let read = "frame->id << \": \" << *content << '\\n'";
-        either(out, "content", read, more, "content.error()");
-    }
-
-    fn code(&self, stream: &Spelled<'_, Operation>) -> String {
-        let of = format!("{}StreamCode::{}", self.space, stream.name);
-        format!("static_cast<std::uint16_t>({of})")
+        let head = format!("while (const auto frame = frames.next({PATIENCE}))");
+        out.block(head, |out| {
+            out.line(format!("std::cout << frame->id << \": \" << {shown};"));
+            out.line(meanwhile.received);
+        });
     }
 
     /// Assigns the content of a stream, unless it is bytes, and returns the expression for it.
@@ -176,11 +173,10 @@ if (!pushed) {
         let Some(value) = value else {
             return literal(BYTES);
         };
-        let others = ["code", "data", "frames", "sent", "server", "taken", "text"];
+        let others = ["frames", "sent", "streamer", "streams", "taken"];
         let filled = self.filled("content", &others, value);
         self.declare(out, "content", value, &filled);
-        out.line("const std::string text = fc_runtime::to_json(content).value_or(\"\");");
-        "text".to_owned()
+        "content".to_owned()
     }
 
     /// Writes `Type name;`, and the statements that fill it.
@@ -265,8 +261,8 @@ pub fn samples_file(context: &Context<'_>) -> String {
     };
     let client = format!("const {space}::Client& client");
     let reporter = format!("const {space}::Reporter& reporter");
-    let server = "const fc_runtime::Server& server";
-    let data = "const fc_runtime::DataConnection& data";
+    let streamer = format!("const {space}::Streamer& streamer");
+    let streams = format!("const {space}::Streams& streams");
     for step in run.that(Verb::Call) {
         function(
             format!("{}({client})", step.name()),
@@ -276,7 +272,11 @@ pub fn samples_file(context: &Context<'_>) -> String {
     }
     for (take, give, [receives, sends, sender]) in [
         (Verb::Take, Verb::Push, [&*client, &*reporter, "reporter"]),
-        (Verb::Subscribe, Verb::Stream, [data, server, "server"]),
+        (
+            Verb::Subscribe,
+            Verb::Stream,
+            [&*streams, &*streamer, "streamer"],
+        ),
     ] {
         for (take, give) in run.that(take).zip(run.that(give)) {
             let name = give.name();
@@ -291,7 +291,7 @@ pub fn samples_file(context: &Context<'_>) -> String {
     }
     for step in run.that(Verb::Send) {
         function(
-            format!("{}({data})", step.name()),
+            format!("{}({streams})", step.name()),
             step,
             &Meanwhile::default(),
         );
@@ -299,12 +299,12 @@ pub fn samples_file(context: &Context<'_>) -> String {
     out.blank();
     out.line("}  // namespace");
     out.blank();
-    main(&mut out, space, run, &writer);
+    main(&mut out, space, run);
     out.finish()
 }
 
 /// Writes the function that runs all samples.
-fn main(out: &mut Source, space: &str, run: &SampleRun<'_, '_>, writer: &Writer<'_, '_>) {
+fn main(out: &mut Source, space: &str, run: &SampleRun<'_, '_>) {
     let check = |out: &mut Source, call: String| {
         let (name, _) = call.split_once('(').unwrap_or((&call, ""));
         let (asks, fails) = (
@@ -359,20 +359,23 @@ if (!client) return failed(\"connect\");"
             ..
         }) = streams.next()
         {
-            let code = writer.code(stream);
-            out.line("const auto data = client->data();");
-            check(out, "data.connected()".to_owned());
+            let code = &stream.code.spelling;
+            out.line(format!("const {space}::Streams streams(client->data());"));
+            check(out, "streams.data().connected()".to_owned());
             out.line("// The robot knows a data connection after its first frame.");
             out.line("static_cast<void>(server->next_stream(std::chrono::milliseconds(0)));");
-            check(out, format!("data.send({code}, 0, \"\")"));
+            check(out, format!("streams.data().send({code}, 0, \"\")"));
             check(out, format!("server->next_stream({PATIENCE})"));
+        }
+        if run.has(Verb::Stream) {
+            out.line(format!("const {space}::Streamer streamer(*server);"));
         }
         for step in run.that(Verb::Subscribe) {
             let name = &step.operation.name;
-            check(out, format!("take_{name}(data, *server)"));
+            check(out, format!("take_{name}(streams, streamer)"));
         }
         for step in run.that(Verb::Send) {
-            check(out, format!("{}(data)", step.name()));
+            check(out, format!("{}(streams)", step.name()));
         }
         out.line("return 0;");
     });

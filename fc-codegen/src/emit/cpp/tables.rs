@@ -2,11 +2,10 @@
 
 use super::fields::enumerators;
 use super::layout::{Includes, float, header_file, integer, literal, raw, source_file};
-use super::types::{name_in, name_of};
+use super::types::field_type_in;
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::expr::{Expr, Expressions, Record};
-use fc_spec::model::Type;
 
 /// Generates `tables.hpp`.
 pub fn header(context: &Context<'_>) -> String {
@@ -58,24 +57,19 @@ pub fn source(context: &Context<'_>) -> String {
 /// Returns a struct with all of its fields.
 fn record(context: &Context<'_>, space: &str, of: &Record<'_>) -> String {
     let members = of.members.iter().map(|(field, value)| match value {
-        Some(value) => spelled_in(context, space, value, &field.ty),
+        Some(value) => spelled_in(context, space, value, &field_type_in(context, space, field)),
         None => "std::nullopt".to_owned(),
     });
     let members: Vec<String> = members.chain(["{}".to_owned()]).collect();
     format!("{space}{}{{{}}}", of.item.ty.name, members.join(", "))
 }
 
-/// Returns a constant of a type, inside the package's namespace.
-pub fn spelled(context: &Context<'_>, expr: &Expr<'_>, ty: &Type) -> String {
-    spelled_in(context, "", expr, ty)
-}
-
-/// Returns a constant with `space` before each name of the package, such as `fc::`.
-pub fn spelled_in(context: &Context<'_>, space: &str, expr: &Expr<'_>, ty: &Type) -> String {
+/// Returns a constant of the C++ type `ty`, with `space` before each name of the package, such as `fc::`.
+pub fn spelled_in(context: &Context<'_>, space: &str, expr: &Expr<'_>, ty: &str) -> String {
     match expr {
         Expr::Bool(value) => value.to_string(),
         Expr::Int(value) => integer(*value),
-        Expr::Float(value) if name_of(context, ty) == "float" => format!("{}F", float(*value)),
+        Expr::Float(value) if ty == "float" => format!("{}F", float(*value)),
         Expr::Float(value) => float(*value),
         Expr::Text(text) => literal(text),
         Expr::Bytes(bytes) => {
@@ -88,17 +82,12 @@ pub fn spelled_in(context: &Context<'_>, space: &str, expr: &Expr<'_>, ty: &Type
                 raw(text)
             )
         }
-        Expr::Id(_, value) => spelled_in(context, space, value, ty),
+        Expr::Id(id, value) => format!("{space}{id}({})", spelled_in(context, space, value, ty)),
         Expr::List(items) => {
-            let inner = match ty {
-                Type::Array(item) => item,
-                other => other,
-            };
-            let items: Vec<String> = items
-                .iter()
-                .map(|it| spelled_in(context, space, it, inner))
-                .collect();
-            format!("{}{{{}}}", name_in(context, space, ty), items.join(", "))
+            let inner = item_of(ty);
+            let items = items.iter().map(|it| spelled_in(context, space, it, inner));
+            let items: Vec<String> = items.collect();
+            format!("{ty}{{{}}}", items.join(", "))
         }
         Expr::Record(of) | Expr::Choice(_, _, of) => record(context, space, of),
         Expr::Value(item, value) => format!("{space}{}::{}", enumerators(item), value.name),
@@ -111,4 +100,10 @@ pub fn spelled_in(context: &Context<'_>, space: &str, expr: &Expr<'_>, ty: &Type
             ),
         },
     }
+}
+
+/// Returns the C++ type of the items of a list.
+pub fn item_of(list: &str) -> &str {
+    let items = list.strip_prefix("std::vector<");
+    items.and_then(|it| it.strip_suffix('>')).unwrap_or(list)
 }

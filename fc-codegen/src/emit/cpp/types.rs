@@ -5,7 +5,7 @@ use crate::package::cycles::{Needs, first_of_circle, reached};
 use crate::package::items::{Item, Shape};
 use crate::package::language::{CPP, Role};
 use crate::package::process::set_off;
-use fc_spec::model::{Accepted, Direction, Type, TypeRef};
+use fc_spec::model::{Accepted, Direction, Field, Type, TypeRef};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -37,6 +37,25 @@ pub fn name_in(context: &Context<'_>, space: &str, ty: &Type) -> String {
         Type::Array(item) => format!("std::vector<{}>", name_in(context, space, item)),
         Type::Named(named) => [space, context.name_of(named)].concat(),
     }
+}
+
+/// Returns the C++ type of a field without `std::optional`. An id field has its id type, if one exists.
+pub fn field_type(context: &Context<'_>, field: &Field) -> String {
+    field_type_in(context, "", field)
+}
+
+/// Returns the C++ type of a field with `space` before each name of the package.
+pub fn field_type_in(context: &Context<'_>, space: &str, field: &Field) -> String {
+    let Some(id) = context.package.id_of(field) else {
+        return name_in(context, space, &field.ty);
+    };
+    let mut ty = [space, &*id.name].concat();
+    let mut held = &field.ty;
+    while let Type::Array(item) = held {
+        ty = format!("std::vector<{ty}>");
+        held = item;
+    }
+    ty
 }
 
 /// Converts an integer type: `u16` to `std::uint16_t`.

@@ -165,8 +165,9 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         let close = format!("): CompletableFuture<{response}> =");
         function(out, &open, parameters, &close, body);
     };
+    let given_all = [given.clone(), OPTIONS.to_owned()];
     twin(
-        &[given.clone(), OPTIONS.to_owned()],
+        &given_all,
         &format!("connection.callAsync(Operations.{method}, request, options)"),
     );
     // `@JvmOverloads` does not work in an interface.
@@ -174,7 +175,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     if let Some(bare) = bare {
         twin(&[], &format!("{method}Async({bare}, CallOptions())"));
     }
-    followed(out, context, command, &parameters);
+    followed(out, context, command, &parameters, &given_all);
 }
 
 /// Creates the comment on the form of a method for Java.
@@ -185,8 +186,14 @@ pub fn for_java(method: &str) -> Docs<'static> {
     ])
 }
 
-/// Writes a method for each kind of report that a command sets off.
-fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, parameters: &[String]) {
+/// Writes a method for each kind of report that a command sets off, and its form for Java.
+fn followed(
+    out: &mut Source,
+    context: &Context<'_>,
+    command: &Call<'_>,
+    parameters: &[String],
+    java_parameters: &[String],
+) {
     let operation = command.operation;
     let (method, response) = (command.method, &command.response.ty.name);
     let followed: Vec<_> = set_off(context, operation).collect();
@@ -220,7 +227,8 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
             format!("{method}FollowedBy{reported_type}")
         };
         let open = format!("public suspend fun {name}(");
-        let close = format!("): Following<{response}, {reported_type}> =");
+        let following = format!("Following<{response}, {reported_type}>");
+        let close = format!("): {following} =");
         let call =
             format!("connection.follow(Operations.{method}, request, Operations.{kind}, options)");
         if ties.is_empty() {
@@ -240,6 +248,15 @@ fn followed(out: &mut Source, context: &Context<'_>, command: &Call<'_>, paramet
                 });
             });
         }
+        out.documented(&for_java(&name));
+        deprecated(out, operation);
+        function(
+            out,
+            &format!("public fun {name}Async("),
+            java_parameters,
+            &format!("): CompletableFuture<{following}> ="),
+            &format!("connection.future {{ {name}(request, options) }}"),
+        );
     }
 }
 

@@ -32,7 +32,7 @@ fn flat(value: &Expr<'_>, ty: &Type, form: Form) -> String {
         Expr::Text(text) => literal(text),
         Expr::Bytes(bytes) => format!("Bytes.of(byteArrayOf({}))", signed(bytes).join(", ")),
         Expr::Json(text) => format!("Json.of({})", literal(text)),
-        Expr::Id(_, value) => flat(value, ty, form),
+        Expr::Id(id, value) => format!("{id}({})", flat(value, ty.item(), form)),
         Expr::List(items) => {
             let item = match ty {
                 Type::Array(item) => item,

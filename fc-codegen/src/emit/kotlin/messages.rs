@@ -1,7 +1,7 @@
 //! Message types: messages, enums and choices.
 
 use super::expr;
-use super::text::{STYLE, codec, literal, plain_codec, scalar, type_of};
+use super::text::{STYLE, codec, field_type, literal, plain_codec, scalar};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
@@ -58,7 +58,7 @@ fn message(
             if let Some(default) = &field.details().default {
                 let default = expressions.held(field, &Value::from(default));
                 let default = expr::expression(&default, &field.ty);
-                let (property, ty) = (&field.name, type_of(context, &field.ty));
+                let (property, ty) = (&field.name, field_type(context, field));
                 out.documented(&Docs::line([
                     "同上；没有时为默认值。",
                     "The same, or the default if it is absent.",
@@ -117,7 +117,7 @@ fn spelled(value: &Expr<'_>) -> String {
 fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>) {
     let (name, constant) = (&field.name, constant(context, field));
     let mark = if field.optional { "?" } else { "" };
-    let ty = type_of(context, &field.ty);
+    let ty = field_type(context, field);
     out.line(format!(
         "public val {name}: {ty}{mark} get() = get({constant})"
     ));
@@ -139,7 +139,7 @@ fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelle
         for field in fields {
             let (property, constant) = (&field.name, constant(context, field));
             let mark = if field.optional { "?" } else { "" };
-            let ty = type_of(context, &field.ty);
+            let ty = field_type(context, field);
             out.documented(&Docs::linked(format!("[{name}.{property}]")));
             let head = format!("public fun {property}({property}: {ty}{mark}): Builder =");
             let put = format!("put({constant}, {property})");

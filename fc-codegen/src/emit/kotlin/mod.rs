@@ -6,6 +6,8 @@
 mod client;
 mod expr;
 mod group;
+mod ids;
+mod java;
 mod messages;
 mod operations;
 mod protocol;
@@ -28,7 +30,8 @@ use text::STYLE;
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, &KOTLIN, &STYLE).of_target(targets, Product::Kotlin);
+    let context =
+        &Context::new(model, targets.naming(&KOTLIN), &STYLE).of_target(targets, Product::Kotlin);
     let id = &model.protocol.id;
     // A keyword cannot be the name of a package either.
     let package = KOTLIN
@@ -39,6 +42,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ("Protocol", protocol::protocol_file(context, &groups)),
         ("Operations", operations::operations_file(context, &groups)),
         ("Client", client::client_file(context, &groups)),
+        ("Ids", ids::ids_file(context)),
         ("Robot", robot::robot_file(context, &groups)),
         ("Tables", tables::tables_file(context)),
     ];
@@ -84,6 +88,7 @@ const IMPORTED: &[&str] = &[
     "fc.runtime.Acknowledgement",
     "fc.runtime.Audience",
     "fc.runtime.Bytes",
+    "fc.runtime.Cadence",
     "fc.runtime.CallOptions",
     "fc.runtime.ChoiceType",
     "fc.runtime.ClientConfig",
@@ -103,6 +108,7 @@ const IMPORTED: &[&str] = &[
     "fc.runtime.HeaderField",
     "fc.runtime.HeaderLayout",
     "fc.runtime.HeaderRole",
+    "fc.runtime.Id",
     "fc.runtime.IntEnumType",
     "fc.runtime.IntValue",
     "fc.runtime.Json",
@@ -130,6 +136,7 @@ const IMPORTED: &[&str] = &[
     "fc.runtime.sameOrUnsaid",
     "java.math.BigInteger",
     "java.util.concurrent.CompletableFuture",
+    "java.util.concurrent.CompletionStage",
     "kotlinx.coroutines.flow.Flow",
 ];
 

@@ -9,7 +9,7 @@ use crate::package::group::Group;
 use crate::package::items::Call;
 use crate::package::process::{has_states, state};
 use crate::package::source::Source;
-use fc_spec::model::{Cadence, Exchange, Kind, Operation, StructRef};
+use fc_spec::model::{AcceptedIn, Cadence, Exchange, Kind, Operation, StructRef};
 
 /// Generates `Operations.kt`.
 pub fn operations_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
@@ -128,10 +128,7 @@ fn command_value(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     if !errors.is_empty() {
         made.push(format!("    .declares({})", errors.join(", ")));
     }
-    let states = accepted(context, operation);
-    if !states.is_empty() {
-        made.push(format!("    .accepted({})", states.join(", ")));
-    }
+    made.extend(preconditions(context, operation));
     out.enclose(&head, "", |out| made.iter().for_each(|line| out.line(line)));
 }
 
@@ -145,14 +142,40 @@ fn titled(operation: &Operation) -> String {
     )
 }
 
-/// Returns the states in which a command is accepted.
-fn accepted(context: &Context<'_>, operation: &Operation) -> Vec<String> {
+/// Returns the calls that set the conditions under which a command is accepted.
+fn preconditions(context: &Context<'_>, operation: &Operation) -> Vec<String> {
+    let Some(accepted) = operation.accepted() else {
+        return Vec::new();
+    };
+    let mut calls = Vec::new();
     let states = context.accepted_states(operation);
     let states = states.iter().flat_map(|states| {
         let values = states.values.iter();
         values.map(|value| format!("{}.{}", states.item.ty.name, value.name))
     });
-    states.collect()
+    let states: Vec<String> = states.collect();
+    if !states.is_empty() {
+        calls.push(format!("    .accepted({})", states.join(", ")));
+    }
+    if matches!(accepted.states, Some(AcceptedIn::Any)) {
+        calls.push("    .acceptedAlways()".to_owned());
+    }
+    if !accepted.after.is_empty() {
+        let after: Vec<String> = accepted.after.iter().map(|name| literal(name)).collect();
+        calls.push(format!("    .after({})", after.join(", ")));
+    }
+    calls
+}
+
+/// Returns the call that sets the time at which a report is sent.
+fn sent_at(cadence: &Cadence) -> String {
+    let made = match cadence {
+        Cadence::OnChange(field) => format!("OnChange({})", literal(field)),
+        Cadence::Step(step) => format!("Step({}, {:?})", literal(&step.field), step.by.to_f64()),
+        Cadence::EveryMs(ms) => format!("Every({ms})"),
+        Cadence::WithinMs(ms) => format!("Within({ms})"),
+    };
+    format!("    .cadence(Cadence.{made})")
 }
 
 fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
@@ -175,9 +198,7 @@ fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
         titled(operation),
         format!("    .ack(AckPolicy({}, {}))", ack.timeout_ms, ack.retries),
     ];
-    if let Some(Cadence::EveryMs(every)) = cadence {
-        made.push(format!("    .every({every})"));
-    }
+    made.extend(cadence.as_ref().map(sent_at));
     let body = &messages.request.ty;
     let state = state(context, operation).filter(|(keys, _)| is_state(context, body, keys));
     // An enum without states has no failures either.

@@ -2,6 +2,7 @@
 
 use super::client::for_java;
 use super::group::{heading, part_name, part_of, parts, wrapper};
+use super::java;
 use super::streams::{self, SERVER, SERVER_DOCS};
 use crate::package::about;
 use crate::package::context::Context;
@@ -68,13 +69,15 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
             "    .onUnknown {{ context, request -> {unknown}(context, request) }}"
         ));
     });
+    java::robots(&mut out, groups, &ranges, &unknown);
     out.blank();
     reporter(&mut out, groups);
     streams::for_robot(&mut out, groups);
     out
 }
 
-fn has_commands(group: &Group<'_, '_>) -> bool {
+/// Returns `true` for a group with commands.
+pub fn has_commands(group: &Group<'_, '_>) -> bool {
     !group.commands.is_empty()
 }
 
@@ -85,7 +88,7 @@ fn robot_and(parts: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// Returns the name of the function that registers a group's commands with a service.
-fn registration(group: &Group<'_, '_>) -> String {
+pub fn registration(group: &Group<'_, '_>) -> String {
     ["on", &*part_name(group, "")].concat()
 }
 
@@ -95,6 +98,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         handlers(out, context, group);
         served(out, group);
         answers(out, group);
+        java::part(out, group);
     }
     if !group.reports.is_empty() {
         reports(out, context, group);

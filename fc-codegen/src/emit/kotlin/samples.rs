@@ -26,7 +26,7 @@ static ON_PAGES: Style = Style {
 pub const SHOWN: Shown = Shown {
     fence: "kotlin",
     file: "generated/src/test/kotlin/Samples.kt",
-    language: |_| &KOTLIN,
+    language: &KOTLIN,
     style: &ON_PAGES,
     write,
 };

@@ -1,5 +1,6 @@
 //! The streams of the data port on both sides.
 
+use super::client::for_java;
 use super::group::{heading, part_name, part_of, parts, wrapper};
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -91,6 +92,11 @@ fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>)
         out.line(format!(
             "public suspend fun send{name}(id: Long, content: {ty}): Unit = data.send({code}, id, content)"
         ));
+        out.documented(&for_java(&format!("send{name}")));
+        out.line(format!(
+            "public fun send{name}Async(id: Long, content: {ty}): CompletableFuture<Void?> ="
+        ));
+        out.line(format!("    data.sendAsync({code}, id, content)"));
     }
 }
 
@@ -104,5 +110,12 @@ fn robot(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation
     ));
     out.line(format!(
         "    server.sendStream(audience, {code}, id, content)"
+    ));
+    out.documented(&for_java(&format!("send{name}")));
+    out.line(format!(
+        "public fun send{name}Async(audience: Audience, id: Long, content: {ty}): CompletableFuture<Int> ="
+    ));
+    out.line(format!(
+        "    server.sendStreamAsync(audience, {code}, id, content)"
     ));
 }

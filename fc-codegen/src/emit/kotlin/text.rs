@@ -123,6 +123,20 @@ pub fn type_of(context: &Context<'_>, ty: &Type) -> String {
     }
 }
 
+/// Returns the Kotlin type of a field. An id field has its id type, if one exists.
+pub fn field_type(context: &Context<'_>, field: &Field) -> String {
+    let Some(id) = context.package.id_of(field) else {
+        return type_of(context, &field.ty);
+    };
+    let mut ty = id.name.to_string();
+    let mut held = &field.ty;
+    while let Type::Array(item) = held {
+        ty = format!("List<{ty}>");
+        held = item;
+    }
+    ty
+}
+
 /// Returns the codec of a plain type.
 pub fn plain_codec(ty: &Type) -> String {
     let name = match ty {
@@ -157,9 +171,14 @@ pub fn codec(context: &Context<'_>, field: &Field, marks: &FieldMarks<'_, '_>) -
         out.push_str(".lenient()");
     }
     let is_of_list = |argument: &Argument<'_>| matches!(argument, Argument::Range(..));
-    let (of_list, of_items): (Vec<_>, Vec<_>) =
-        marks.constraints.iter().partition(|it| is_of_list(&it.1));
+    let (of_list, of_items): (Vec<_>, Vec<_>) = marks
+        .constraints
+        .iter()
+        .partition(|it| lists > 0 && is_of_list(&it.1));
     out.extend(of_items.into_iter().map(demand));
+    if let Some(id) = context.package.id_of(field) {
+        out = format!("Types.id({out}, ::{})", id.name);
+    }
     for _ in 0..lists {
         out = format!("Types.list({out})");
     }

@@ -61,7 +61,7 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
         let Ok(model) = part(model, targets.audience(product)) else {
             continue;
         };
-        let language = (shown.language)(targets);
+        let language = targets.naming(shown.language);
         let context = Context::new(&model, language, shown.style);
         let tab = |sample: Sample<'_, '_>| {
             let mut out = context.source();

@@ -28,8 +28,8 @@ use modules::ModulePlan;
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context =
-        &Context::new(model, targets.python(), &source::PYTHON).of_target(targets, Product::Python);
+    let context = &Context::new(model, targets.naming(&PYTHON), &source::PYTHON)
+        .of_target(targets, Product::Python);
     let plan = &ModulePlan::build(context);
     let (Ok(package) | Err(package)) = PYTHON.spelling(Role::Module, &model.protocol.id);
     let ids = !context.package.ids.is_empty();

@@ -6,10 +6,10 @@ use super::literal::Constants;
 use super::source::{Code, PYTHON, Python, method};
 use crate::package::context::Context;
 use crate::package::expr::Record;
+use crate::package::language::PYTHON as LANGUAGE;
 use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
 use crate::package::source::Source;
 use crate::package::style::Style;
-use crate::target::Targets;
 
 /// The style of Python on a page.
 static ON_PAGES: Style = Style {
@@ -21,7 +21,7 @@ static ON_PAGES: Style = Style {
 pub const SHOWN: Shown = Shown {
     fence: "python",
     file: "tests/test_samples.py",
-    language: Targets::python,
+    language: &LANGUAGE,
     style: &ON_PAGES,
     write: |out, _, sample| write(out, &mut Constants::default(), sample),
 };

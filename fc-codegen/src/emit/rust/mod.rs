@@ -24,6 +24,7 @@ mod source;
 mod streams;
 mod tables;
 
+use crate::package::language::RUST;
 use crate::product::{Artifact, Product};
 use crate::target::Targets;
 use context::Context;
@@ -31,7 +32,7 @@ use fc_spec::model::Model;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 fn context<'m>(model: &'m Model, targets: &Targets) -> Context<'m> {
-    Context::new(model, targets.rust(), &source::RUST).of_target(targets, Product::Rust)
+    Context::new(model, targets.naming(&RUST), &source::RUST).of_target(targets, Product::Rust)
 }
 
 /// Generates all sources of the crate.

@@ -7,15 +7,15 @@ use super::context::Context;
 use super::robot::signature;
 use super::source::{RUST, Source};
 use crate::package::expr::Record;
+use crate::package::language::RUST as LANGUAGE;
 use crate::package::name::free;
 use crate::package::samples::{BYTES, Sample, SampleRun, SampleStep, Shown, Verb};
-use crate::target::Targets;
 
 /// The Rust samples on the pages.
 pub const SHOWN: Shown = Shown {
     fence: "rust",
     file: "tests/samples.rs",
-    language: Targets::rust,
+    language: &LANGUAGE,
     style: &RUST,
     write,
 };

@@ -4,7 +4,7 @@ use super::context::{Context, is_large, repr_is_large};
 use super::layout::Layout;
 use super::source::float;
 use crate::package::expr::{Expr, Record};
-use crate::package::items::{Item, Shape};
+use crate::package::items::Shape;
 use fc_spec::model::{EnumRepr, Number, Scalar};
 use std::collections::BTreeSet;
 
@@ -41,22 +41,22 @@ pub fn constant(context: &Context<'_>, expr: &Expr<'_>, large: bool) -> Layout {
     Constants::new(context, "messages.").value(expr, large)
 }
 
-/// Lays out constants, and collects the enums that they name.
+/// Lays out constants, and collects the enums and id types that they name.
 pub struct Constants<'c, 'm> {
     context: &'c Context<'m>,
-    /// The text before the name of an enum.
+    /// The text before the name of an enum or id type.
     prefix: &'static str,
-    /// The enums named so far.
-    pub enums: BTreeSet<String>,
+    /// The enums and id types named so far.
+    pub names: BTreeSet<String>,
 }
 
 impl<'c, 'm> Constants<'c, 'm> {
-    /// Creates an instance for a file that puts `prefix` before the name of an enum.
+    /// Creates an instance for a file that puts `prefix` before these names.
     pub fn new(context: &'c Context<'m>, prefix: &'static str) -> Self {
         Self {
             context,
             prefix,
-            enums: BTreeSet::new(),
+            names: BTreeSet::new(),
         }
     }
 
@@ -69,13 +69,9 @@ impl<'c, 'm> Constants<'c, 'm> {
             Expr::Text(text) | Expr::Json(text) => Layout::text(text),
             Expr::Bytes(bytes) => {
                 let bytes = bytes.iter().map(|byte| integer((*byte).into(), false));
-                Layout::Around(
-                    "new Uint8Array(",
-                    Box::new(Layout::List(bytes.collect())),
-                    ")",
-                )
+                call("new Uint8Array".into(), Layout::List(bytes.collect()))
             }
-            Expr::Id(_, value) => self.value(value, large),
+            Expr::Id(id, value) => call(self.named(id), self.value(value, large)),
             Expr::List(items) => {
                 let items = items.iter().map(|item| self.value(item, large));
                 Layout::List(items.collect())
@@ -86,7 +82,7 @@ impl<'c, 'm> Constants<'c, 'm> {
                 ("value".to_owned(), self.record(record)),
             ]),
             Expr::Value(item, value) => {
-                let name = self.named(item);
+                let name = self.named(&item.ty.name);
                 Layout::word(format!("{name}.{}", value.name))
             }
             Expr::Unlisted(item, value) => {
@@ -106,9 +102,13 @@ impl<'c, 'm> Constants<'c, 'm> {
         Layout::Object(members.collect())
     }
 
-    fn named(&mut self, item: &Item<'_>) -> String {
-        let name = &item.ty.name;
-        self.enums.insert(name.to_string());
+    fn named(&mut self, name: &str) -> String {
+        self.names.insert(name.to_owned());
         [self.prefix, name].concat()
     }
+}
+
+/// Returns a call with one argument.
+fn call(function: String, argument: Layout) -> Layout {
+    Layout::Around((function + "(").into(), Box::new(argument), ")")
 }

@@ -10,9 +10,18 @@ pub use crate::package::context::{Context, page_of};
 /// The largest integer up to which a `number` is exact.
 const SAFE: i128 = (1 << 53) - 1;
 
-/// Returns the type of a field without its optional mark.
+/// Returns the type of a field without its optional mark. An id field has its id type, if one exists.
 pub fn field_type(context: &Context<'_>, field: &Field) -> String {
-    type_of(context, &field.ty, is_large(context, field))
+    let Some(id) = context.package.id_of(field) else {
+        return type_of(context, &field.ty, is_large(context, field));
+    };
+    let mut ty = id.name.to_string();
+    let mut held = &field.ty;
+    while let Type::Array(item) = held {
+        ty.push_str("[]");
+        held = item;
+    }
+    ty
 }
 
 /// Returns the type of a type of the spec; `large` makes its integers `bigint`.
@@ -36,7 +45,7 @@ pub fn is_large(context: &Context<'_>, field: &Field) -> bool {
             let shape = &context.package.item(named).shape;
             matches!(shape, Shape::Enum(shape, _) if repr_is_large(shape.repr))
         }
-        ty => is_64_bit(ty) && !is_safe(field),
+        ty => is_64_bit(ty) && !is_safe(context, field),
     }
 }
 
@@ -110,8 +119,8 @@ pub fn repr_is_large(repr: EnumRepr) -> bool {
     matches!(repr, EnumRepr::Int(IntKind::I64 | IntKind::U64))
 }
 
-/// Returns `true` if the range of a 64-bit integer fits a `number`.
-pub fn is_safe(field: &Field) -> bool {
+/// Returns `true` for a 64-bit integer that is a `number`, because its range fits. An id has the same type in every field.
+pub fn is_safe(context: &Context<'_>, field: &Field) -> bool {
     let fits = |number: &Option<Number>, or: i128| match number {
         Some(Number::Int(value)) => value.abs() <= SAFE,
         Some(Number::Float(_)) => false,
@@ -123,6 +132,7 @@ pub fn is_safe(field: &Field) -> bool {
     };
     let details = field.details();
     is_64_bit(field.ty.item())
+        && context.package.id_of(field).is_none()
         && fits(&details.constraints.min, least)
         && fits(&details.constraints.max, i128::MAX)
 }

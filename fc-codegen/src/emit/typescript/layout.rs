@@ -2,6 +2,7 @@
 
 use super::source::literal;
 use crate::package::source::{Source, join};
+use std::borrow::Cow;
 
 /// A value before it is laid out.
 #[derive(Clone, Debug)]
@@ -18,7 +19,7 @@ pub enum Layout {
     /// `[value]`.
     List(Vec<Layout>),
     /// A prefix and a suffix around another value: `new Uint8Array(`, `)`.
-    Around(&'static str, Box<Layout>, &'static str),
+    Around(Cow<'static, str>, Box<Layout>, &'static str),
 }
 
 impl Layout {

@@ -54,6 +54,14 @@ pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> St
             &format!("../{from}/messages.ts"),
         );
     }
+    let fields = items.iter().flat_map(Item::fields);
+    let ids = fields.filter_map(|field| context.package.id_of(field));
+    named(
+        &mut out,
+        "import type",
+        ids.map(|id| &id.name),
+        "../../ids.ts",
+    );
     for item in items {
         out.blank();
         match &item.shape {

@@ -8,6 +8,7 @@ mod constants;
 mod context;
 mod described;
 mod group;
+mod ids;
 mod layout;
 mod messages;
 mod operations;
@@ -81,8 +82,8 @@ static KINDS: [Kind; 6] = [
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context =
-        &Context::new(model, &LANGUAGE, &TYPESCRIPT).of_target(targets, Product::TypeScript);
+    let context = &Context::new(model, targets.naming(&LANGUAGE), &TYPESCRIPT)
+        .of_target(targets, Product::TypeScript);
     let samples = &Samples::new(model);
     let groups = &Group::all(&context.package);
     let mut files: Vec<(String, &str, String)> = Vec::new();
@@ -98,9 +99,16 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     ] {
         files.push((path.to_owned(), "the spec", text));
     }
+    let has_ids = !context.package.ids.is_empty();
+    if has_ids {
+        files.push(("ids.ts".to_owned(), "the spec", ids::file(context)));
+    }
     for kind in &KINDS {
         let file = kind.file;
-        let text = group::index(context, kind.about, groups, file, kind.what);
+        let mut text = group::index(context, kind.about, groups, file, kind.what);
+        if has_ids && kind.file == "messages" {
+            text.push_str("export * from './ids.ts'\n");
+        }
         files.push((format!("{file}.ts"), "the spec", text));
         for group in groups.iter().filter(|it| it.has(kind.what)) {
             let text = (kind.text)(context, samples, group);

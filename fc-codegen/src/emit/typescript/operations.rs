@@ -185,7 +185,7 @@ fn example(
     let value = samples.body(operation, direction, Profile::Example);
     let record = Expressions::new(&context.package).record(&body.ty, &value);
     let value = constant(context, &Expr::Record(record), false);
-    Layout::Around("() => (", Box::new(value), ")")
+    Layout::Around("() => (".into(), Box::new(value), ")")
 }
 
 /// Returns the conditions under which a command is accepted.

@@ -23,7 +23,7 @@ static ON_PAGES: Style = Style {
 pub const SHOWN: Shown = Shown {
     fence: "ts",
     file: "samples.ts",
-    language: |_| &LANGUAGE,
+    language: &LANGUAGE,
     style: &ON_PAGES,
     write: |out, context, sample| write(out, context, &mut Names::new(context), sample),
 };
@@ -166,10 +166,9 @@ pub fn file(context: &Context<'_>) -> String {
     client.extend(run.has_streams().then_some("Streams"));
     named(&mut out, "import", client, "./client.ts");
     let Names { types, constants } = names;
-    let enums = constants.enums;
-    let types = types.difference(&enums);
+    let types = types.difference(&constants.names);
     named(&mut out, "import type", types, "./messages.ts");
-    named(&mut out, "import", &enums, "./messages.ts");
+    named(&mut out, "import", &constants.names, "./messages.ts");
     named(&mut out, "import type", ["Robot"], "./robot.ts");
     let mut stub = vec!["serve"];
     stub.extend(run.has(Verb::Push).then_some("Reporter"));

@@ -121,7 +121,7 @@ fn field(
         .with("key", Layout::text(&field.wire))
         .with("type", type_schema(context, &field.ty))
         .with("optional", Layout::flag(field.optional))
-        .with("safe", Layout::flag(is_safe(field)));
+        .with("safe", Layout::flag(is_safe(context, field)));
     for quirk in marks.quirks_in_order() {
         members = members.with(&Case::Camel.apply(quirk), Layout::flag(true));
     }

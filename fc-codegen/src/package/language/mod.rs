@@ -16,8 +16,8 @@ use std::sync::OnceLock;
 pub use cpp::CPP;
 pub use java::JAVA;
 pub use kotlin::KOTLIN;
-pub use python::{PYTHON, PYTHON_WITH_IDS};
-pub use rust::{RUST, RUST_WITH_IDS};
+pub use python::PYTHON;
+pub use rust::RUST;
 pub use typescript::TYPESCRIPT;
 
 /// The kind of element that a name denotes.
@@ -130,6 +130,8 @@ pub struct Language {
     pub has_file_per_type: bool,
     /// `true` if the ids of each entity have a type.
     pub has_id_types: bool,
+    /// The same language with a type for the ids of each entity.
+    with_ids: Option<&'static Self>,
     /// `true` if several required fields of a struct get a type whose name ends in `Fields`.
     pub has_field_types: bool,
 }
@@ -142,6 +144,12 @@ impl Language {
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         Self::ALL.into_iter().find(|language| language.name == name)
+    }
+
+    /// Returns the language with a type for the ids of each entity, if it has such types.
+    #[must_use]
+    pub fn with_ids(&'static self) -> &'static Self {
+        self.with_ids.unwrap_or(self)
     }
 
     /// Returns a name of the spec in this language. Reserved words are escaped.

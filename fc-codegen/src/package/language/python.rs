@@ -3,17 +3,17 @@
 use super::{Case, Language, Role, Words};
 
 /// Python with plain integers and strings as ids.
-pub static PYTHON: Language = python(false);
+pub static PYTHON: Language = python(Some(&PYTHON_WITH_IDS));
 
 /// Python with an id type for each entity: `newtypes: true` in `fc.yaml`.
-pub static PYTHON_WITH_IDS: Language = python(true);
+static PYTHON_WITH_IDS: Language = python(None);
 
 /// Builds the rules of Python.
 ///
 /// The keywords exclude soft ones. They include built-in types and types of the runtime that annotations use, because a
 /// field or method with that name would hide them. The types are built-in types and exceptions that look like type
 /// names, and those of the generated package.
-const fn python(has_id_types: bool) -> Language {
+const fn python(with_ids: Option<&'static Language>) -> Language {
     Language {
         name: "python",
         title: "Python",
@@ -42,7 +42,8 @@ const fn python(has_id_types: bool) -> Language {
         escape: |_, word| Some(format!("{word}_")),
         group_types: &[],
         has_file_per_type: false,
-        has_id_types,
+        has_id_types: with_ids.is_none(),
+        with_ids,
         has_field_types: false,
     }
 }

@@ -3,16 +3,16 @@
 use super::{Case, Language, Role, Words};
 
 /// Rust with plain integers and strings as ids.
-pub static RUST: Language = rust(false);
+pub static RUST: Language = rust(Some(&RUST_WITH_IDS));
 
 /// Rust with an id type for each entity: `newtypes: true` in `fc.yaml`.
-pub static RUST_WITH_IDS: Language = rust(true);
+static RUST_WITH_IDS: Language = rust(None);
 
 /// Builds the rules of Rust.
 ///
 /// The keywords are the strict and reserved ones of every edition up to 2024. The types are those of the prelude, of
 /// the generated crate, and of the runtime in its messages.
-const fn rust(has_id_types: bool) -> Language {
+const fn rust(with_ids: Option<&'static Language>) -> Language {
     Language {
         name: "rust",
         title: "Rust",
@@ -47,7 +47,8 @@ const fn rust(has_id_types: bool) -> Language {
         },
         group_types: &[],
         has_file_per_type: false,
-        has_id_types,
+        has_id_types: with_ids.is_none(),
+        with_ids,
         has_field_types: true,
     }
 }

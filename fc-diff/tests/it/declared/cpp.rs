@@ -61,8 +61,11 @@ fn declaration(declared: &mut Declared, owner: &str, node: &Node) {
         .split_once(' ')
         .filter(|(kind, _)| matches!(*kind, "struct" | "class"))
     {
-        let name = format!("{owner}{}", cut(rest, " : ").0);
-        declared.name(&name, "");
+        let (name, base) = cut(rest, " : ");
+        let name = format!("{owner}{name}");
+        // An id is constructed from the type that its base names.
+        let is_id = base.contains("fc_runtime::Id<");
+        declared.name(&name, if is_id { base } else { "" });
         members(declared, &name, kind == "class", node);
     } else if let Some(name) = member(declared, owner, head) {
         declared.name(name, "");

@@ -38,8 +38,10 @@ fn declaration(declared: &mut Declared, owner: &str, node: &Node) {
     match kind {
         "class" | "object" | "interface" => {
             let name = format!("{owner}{}", word(rest));
-            declared.name(&name, "");
             let supers = parts(cut(rest, " : ").1);
+            // An id is constructed from the type that its base names.
+            let base = supers.first().filter(|it| it.starts_with("Id<"));
+            declared.name(&name, base.copied().unwrap_or_default());
             if supers.contains(&"State") {
                 declared.name(format!("{name}: State"), "");
             }

@@ -18,7 +18,7 @@ pub fn read(declared: &mut Declared, path: &str, text: &str) {
     let is_group = path.contains("/groups/");
     let module = match file.trim_end_matches(".ts") {
         "messages" if is_group => "",
-        "client" | "robot" | "wire" | "operations" => "",
+        "client" | "ids" | "robot" | "wire" | "operations" => "",
         module @ ("commands" | "reports" | "streams" | "schemas" | "defaults") if is_group => {
             module
         }

@@ -69,20 +69,6 @@ namespace detail {
 class ConnectionImpl;
 }
 
-/// Iterates over the states of a connection, starting with the current one. States are not queued:
-/// a late caller gets only the latest.
-class ConnectionStates {
- public:
-  explicit ConnectionStates(std::shared_ptr<detail::ConnectionImpl> impl)
-      : impl_(std::move(impl)) {}
-  /// Returns the next state, or nothing if none arrives within `wait`.
-  [[nodiscard]] std::optional<ConnectionState> next(std::chrono::milliseconds wait);
-
- private:
-  std::shared_ptr<detail::ConnectionImpl> impl_;
-  std::uint64_t seen_ = 0;
-};
-
 /// A call in flight that can be cancelled.
 class PendingCall {
  public:

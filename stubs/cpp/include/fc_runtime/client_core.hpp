@@ -63,6 +63,21 @@ class Life {
   std::uint64_t version_ = 1;
 };
 
+/// Iterates over the states of a connection, starting with the current one. States are not queued:
+/// a late caller gets only the latest.
+class ConnectionStates {
+ public:
+  explicit ConnectionStates(std::shared_ptr<const Life> life) : life_(std::move(life)) {}
+  /// Returns the next state, or nothing if none arrives within `wait`.
+  [[nodiscard]] std::optional<ConnectionState> next(std::chrono::milliseconds wait) {
+    return life_->next(seen_, wait);
+  }
+
+ private:
+  std::shared_ptr<const Life> life_;
+  std::uint64_t seen_ = 0;
+};
+
 /// Detects a stalled frame. A frame may take the stall timeout, plus one second for each received
 /// 16 KiB. The rate limit keeps a wrong length from passing for progress.
 class Progress {

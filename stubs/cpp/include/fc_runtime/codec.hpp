@@ -189,6 +189,8 @@ void write_value(Writer& writer, const Field& field, const T& value) {
         value);
   } else if constexpr (is_enum<T>) {
     EnumCodec<T>::write(writer, field, value);
+  } else if constexpr (is_id<T>) {
+    write_value(writer, field, value.value());
   } else {
     Codec<T>::write(writer, value);
   }
@@ -308,6 +310,8 @@ void print_value(std::ostream& out, const Field& field, const T& value) {
     out << value;
   } else if constexpr (is_enum<T>) {
     out << value;
+  } else if constexpr (is_id<T>) {
+    print_value(out, field, value.value());
   } else {
     Codec<T>::print(out, value);
   }

@@ -35,7 +35,7 @@ void ask_conditions(const T& value, std::optional<ConditionError>& found) {
   } else if constexpr (IsChoice<T>::value) {
     std::visit([&found](const auto& variant) { ask_conditions(variant, found); }, value);
   } else if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string> &&
-                       !std::is_same_v<T, Json> && !is_enum<T>) {
+                       !std::is_same_v<T, Json> && !is_enum<T> && !is_id<T>) {
     found = Codec<T>::conditions(value);
   }
 }

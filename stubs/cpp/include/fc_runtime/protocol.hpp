@@ -159,6 +159,45 @@ enum class OperationKind {
   Stream,   ///< Frames of raw bytes.
 };
 
+/// Some values of an enum.
+struct AcceptedStates {
+  /// The name of the enum in the spec.
+  std::string_view type;
+  /// The names of its values in code.
+  std::vector<std::string_view> values;
+};
+
+/// The conditions under which the robot accepts a command.
+struct Preconditions {
+  /// `true` if it is accepted in any state.
+  bool any_state = false;
+  /// The states that accept it: each of these enums must have one of these values. Empty if the spec
+  /// does not specify them.
+  std::vector<AcceptedStates> states;
+  /// Names of the commands that come first.
+  std::vector<std::string_view> after;
+};
+
+/// The kind of a cadence.
+enum class CadenceKind {
+  OnChange,  ///< At each change of the field.
+  Step,      ///< At each step of the field, a number.
+  Every,     ///< At regular intervals.
+  Within,    ///< Within a time after a command that sets it off.
+};
+
+/// The time at which a report is sent.
+struct Cadence {
+  /// The kind of the cadence.
+  CadenceKind kind = CadenceKind::OnChange;
+  /// The path of the field, with wire keys from the body on, joined by dots.
+  std::string_view field;
+  /// The size of a step.
+  double step = 0;
+  /// The interval, or the longest time after the command.
+  std::chrono::milliseconds time{0};
+};
+
 /// The untyped facts of an operation, for the runtime and tools.
 struct OperationInfo {
   /// Name in the spec.
@@ -175,8 +214,10 @@ struct OperationInfo {
   std::string_view en;
   /// The acknowledgement policy of a report. Unset: the default of the protocol.
   std::optional<AckPolicy> ack;
-  /// The interval of periodic reports, if the spec specifies it.
-  std::optional<std::chrono::milliseconds> interval;
+  /// The conditions of a command, if the spec specifies any.
+  std::optional<Preconditions> preconditions;
+  /// The time at which a report is sent, if the spec specifies it.
+  std::optional<Cadence> cadence;
   /// The request, or the body of a report. Unset for a stream.
   std::optional<TypeInfo> request;
   /// The response, or the acknowledgement of a report.

@@ -45,7 +45,7 @@ using Pushed = std::function<void(std::vector<AckOutcome>)>;
 
 /// The reason why a report or stream was not queued.
 enum class PushErrorKind {
-  Invalid,       ///< The report breaks one of its constraints.
+  Invalid,       ///< The report or content breaks one of its constraints.
   Frame,         ///< The data does not fit into a frame.
   NoConnection,  ///< The connection is closed; for a stream: no data connection is open.
   Ambiguous,     ///< Several apps share the address: the owner of the data connection is unknown.

@@ -170,6 +170,16 @@ class Server {
   [[nodiscard]] Result<std::size_t, PushError> send_stream(std::optional<ConnectionId> to,
                                                            std::uint16_t code, std::uint32_t id,
                                                            std::string data) const;
+  /// Sends a message as the content of a frame.
+  template <class Content>
+  [[nodiscard]] Result<std::size_t, PushError> send_stream_json(std::optional<ConnectionId> to,
+                                                                std::uint16_t code,
+                                                                std::uint32_t id,
+                                                                const Content& content) const {
+    auto text = to_json(content);
+    if (!text) return PushError{PushErrorKind::Invalid, std::move(text).error()};
+    return send_stream(to, code, id, *std::move(text));
+  }
   /// Returns the next frame that an app sent to the data port. Earlier frames are dropped until the
   /// first call.
   [[nodiscard]] std::optional<AppStream> next_stream(std::chrono::milliseconds wait) const;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fc_runtime/field.hpp"
+#include "fc_runtime/id.hpp"
 #include "fc_runtime/message.hpp"
 #include "fc_runtime/reader.hpp"
 #include "fc_runtime/required.hpp"
@@ -185,6 +186,11 @@ bool read_value(Reader& reader, const Field& field, T& out) {
     return read_choice(reader, out, std::make_index_sequence<std::variant_size_v<T>>{});
   } else if constexpr (is_enum<T>) {
     return EnumCodec<T>::read(reader, field, out);
+  } else if constexpr (is_id<T>) {
+    typename T::Held value{};
+    if (!read_value(reader, field, value)) return false;
+    out = T(std::move(value));
+    return true;
   } else {
     return Codec<T>::read(reader, out);
   }
@@ -206,6 +212,8 @@ template <class T>
 bool keeps(const Field& field, const T& value, Breach& breach) {
   if constexpr (IsRequired<T>::value) {
     return keeps(field, value.value(), breach);
+  } else if constexpr (is_id<T>) {
+    return keeps(field, value.value(), breach);
   } else if constexpr (IsOptional<T>::value) {
     return !value.has_value() || keeps(field, *value, breach);
   } else {
@@ -224,7 +232,9 @@ bool keeps(const Field& field, const T& value, Breach& breach) {
 
 template <class T>
 bool keeps_items(const Field& field, const T& value, Breach& breach) {
-  if constexpr (IsList<T>::value) {
+  if constexpr (is_id<T>) {
+    return keeps_items(field, value.value(), breach);
+  } else if constexpr (IsList<T>::value) {
     if constexpr (std::is_same_v<T, Bytes>) {
       if (field.is_base64()) return true;
     }

@@ -307,10 +307,8 @@ std::shared_ptr<ReportQueue> Connection::reports(std::optional<std::uint16_t> co
 
 ConnectionState Connection::state() const { return handle_->impl->life().now(); }
 
-ConnectionStates Connection::states() const { return ConnectionStates(handle_->impl); }
-
-std::optional<ConnectionState> ConnectionStates::next(std::chrono::milliseconds wait) {
-  return impl_->life().next(seen_, wait);
+ConnectionStates Connection::states() const {
+  return ConnectionStates({handle_->impl, &handle_->impl->life()});
 }
 
 std::optional<Loss> Connection::closed(std::chrono::milliseconds wait) const {

@@ -16,6 +16,8 @@ std::string_view name(DataErrorKind kind) noexcept {
       return "lost";
     case DataErrorKind::Frame:
       return "frame";
+    case DataErrorKind::Invalid:
+      return "invalid_content";
     case DataErrorKind::Timeout:
       return "timeout";
   }
@@ -26,6 +28,7 @@ std::string to_string(const DataError& error) {
   std::string text(name(error.kind));
   if (error.loss) text += ": " + to_string(*error.loss);
   if (error.frame) text += ": " + to_string(*error.frame);
+  if (error.body) text += ": " + to_string(*error.body);
   return text;
 }
 
@@ -36,7 +39,7 @@ namespace {
 /// Most frames that wait for the app, or for one of its subscriptions.
 constexpr std::size_t kFramesForApp = 4;
 
-DataError failed(DataErrorKind kind, const Loss& why) { return {kind, why, std::nullopt}; }
+DataError failed(DataErrorKind kind, const Loss& why) { return {kind, why, {}, {}}; }
 
 }  // namespace
 
@@ -79,13 +82,10 @@ void DataImpl::dial() {
       up(*std::move(link));
       return;
     }
-    {
-      const std::lock_guard held(mutex_);
-      state_.why = link.error();
-    }
+    life_.lost(link.error());
     dial();
   });
-  if (!tries) close(state_.why);
+  if (!tries) close(life_.now().why);
 }
 
 void DataImpl::up(std::shared_ptr<Link> link) {
@@ -113,8 +113,7 @@ void DataImpl::up(std::shared_ptr<Link> link) {
   {
     const std::lock_guard held(mutex_);
     has_sent_ = false;
-    state_.status = ConnectionStatus::Connected;
-    ++state_.connects;
+    life_.connected();
     changed_.notify_all();
   }
   link_->read();
@@ -146,7 +145,7 @@ void DataImpl::take_frames() {
       if (id.response || id.kind != commands_->protocol().stream_kind) continue;
       give(id.code, StreamFrame{id.code, id.id, std::string(frame.data)});
     } else if (!next.error().is_fatal()) {
-      give(next.error().frame.code, DataError{DataErrorKind::Frame, std::nullopt, next.error()});
+      give(next.error().frame.code, DataError{DataErrorKind::Frame, {}, next.error(), {}});
     } else {
       held.unlock();
       down({LossKind::Frame, next.error().kind, {}}, false);
@@ -203,16 +202,22 @@ std::shared_ptr<Subscribed> DataImpl::subscribe(std::uint16_t code) {
 Result<StreamFrame, DataError> DataImpl::next_of(Subscribed& subscribed,
                                                  std::chrono::milliseconds wait) {
   std::unique_lock held(mutex_);
-  changed_.wait_for(held, bounded(wait), [&] {
-    return !subscribed.inbox.empty() || state_.status == ConnectionStatus::Closed;
-  });
+  changed_.wait_for(held, bounded(wait), [&] { return !subscribed.inbox.empty() || is_over(); });
   if (!subscribed.inbox.empty()) {
     Result<StreamFrame, DataError> first = std::move(subscribed.inbox.front());
     subscribed.inbox.pop_front();
     return first;
   }
-  if (state_.status == ConnectionStatus::Closed) return failed(DataErrorKind::Closed, state_.why);
-  return DataError{DataErrorKind::Timeout, std::nullopt, std::nullopt};
+  return none();
+}
+
+bool DataImpl::is_over() const { return life_.now().status == ConnectionStatus::Closed; }
+
+/// Returns the error of a receiver without a frame.
+DataError DataImpl::none() const {
+  const ConnectionState state = life_.now();
+  if (state.status == ConnectionStatus::Closed) return failed(DataErrorKind::Closed, state.why);
+  return DataError{DataErrorKind::Timeout, {}, {}, {}};
 }
 
 std::uint64_t DataImpl::missed_by(const Subscribed& subscribed) {
@@ -228,11 +233,8 @@ void DataImpl::down(const Loss& why, bool for_good) {
   watching_.cancel();
   dialler_.ended(is_heard_);
   const std::lock_guard held(mutex_);
-  const bool was_there = state_.status == ConnectionStatus::Connected;
-  if (state_.status != ConnectionStatus::Closed) {
-    state_.status = for_good ? ConnectionStatus::Closed : ConnectionStatus::Connecting;
-    state_.why = why;
-  }
+  const bool was_there = life_.now().status == ConnectionStatus::Connected;
+  for_good ? life_.close(why) : life_.lost(why);
   if (was_there && !for_good) {
     bool are_any = false;
     for (const auto& weak : subscriptions_) {
@@ -241,13 +243,13 @@ void DataImpl::down(const Loss& why, bool for_good) {
       if (subscribed) queue(*subscribed, failed(DataErrorKind::Lost, why));
     }
     if (is_asked_ || !are_any) inbox_.emplace_back(failed(DataErrorKind::Lost, why));
-    may_be_lost_ = has_sent_;
+    if (has_sent_) untold_loss_ = why;
   }
   // Frames in transit may have arrived. The others are sent over the next connection.
   while (!sending_.empty() && (for_good || sending_.front()->is_begun)) {
     Sending& first = *sending_.front();
     first.ended.emplace(failed(first.is_begun ? DataErrorKind::Lost : DataErrorKind::Closed, why));
-    if (first.is_begun) may_be_lost_ = false;
+    if (first.is_begun) untold_loss_.reset();
     sending_.pop_front();
   }
   changed_.notify_all();
@@ -267,8 +269,8 @@ void DataImpl::send_next() {
     Sending& first = *sending_.front();
     if (first.is_begun) {
       first.ended.emplace(Done{});
-    } else if (std::exchange(may_be_lost_, false)) {
-      first.ended.emplace(failed(DataErrorKind::Lost, state_.why));
+    } else if (const auto loss = std::exchange(untold_loss_, std::nullopt)) {
+      first.ended.emplace(failed(DataErrorKind::Lost, *loss));
     } else if (!first.is_given_up) {
       first.is_begun = true;
       has_sent_ = true;
@@ -310,25 +312,19 @@ void DataImpl::watch() {
 Result<Done, DataError> DataImpl::wait_for_connection() {
   std::unique_lock held(mutex_);
   changed_.wait_for(held, bounded(commands_->settings().call_timeout),
-                    [this] { return state_.status != ConnectionStatus::Connecting; });
-  if (state_.status == ConnectionStatus::Connected) return Done{};
-  return failed(state_.status == ConnectionStatus::Closed ? DataErrorKind::Closed
-                                                          : DataErrorKind::NotConnected,
-                state_.why);
+                    [this] { return life_.now().status != ConnectionStatus::Connecting; });
+  const ConnectionState state = life_.now();
+  if (state.status == ConnectionStatus::Connected) return Done{};
+  return failed(state.status == ConnectionStatus::Closed ? DataErrorKind::Closed
+                                                         : DataErrorKind::NotConnected,
+                state.why);
 }
 
 Result<StreamFrame, DataError> DataImpl::next(std::chrono::milliseconds wait) {
   std::unique_lock held(mutex_);
   is_asked_ = true;
-  changed_.wait_for(held, bounded(wait), [this] {
-    return !inbox_.empty() || state_.status == ConnectionStatus::Closed;
-  });
-  if (inbox_.empty()) {
-    if (state_.status == ConnectionStatus::Closed) {
-      return failed(DataErrorKind::Closed, state_.why);
-    }
-    return DataError{DataErrorKind::Timeout, std::nullopt, std::nullopt};
-  }
+  changed_.wait_for(held, bounded(wait), [this] { return !inbox_.empty() || is_over(); });
+  if (inbox_.empty()) return none();
   const bool was_full = inbox_.size() >= kFramesForApp;
   Result<StreamFrame, DataError> first = std::move(inbox_.front());
   inbox_.pop_front();
@@ -347,11 +343,9 @@ Result<Done, DataError> DataImpl::send(std::uint16_t code, std::uint32_t id,
   std::unique_lock held(mutex_);
   const FrameId frame{false, commands_->protocol().stream_kind, code, id};
   if (const auto written = encoder_.append(sending->bytes, frame, data); !written) {
-    return DataError{DataErrorKind::Frame, std::nullopt, written.error()};
+    return DataError{DataErrorKind::Frame, {}, written.error(), {}};
   }
-  if (state_.status == ConnectionStatus::Closed) {
-    return failed(DataErrorKind::Closed, state_.why);
-  }
+  if (is_over()) return none();
   sending_.push_back(sending);
   commands_->post([self = shared_from_this()] { self->send_next(); });
   const auto is_ended = [&] { return sending->ended.has_value(); };
@@ -359,7 +353,7 @@ Result<Done, DataError> DataImpl::send(std::uint16_t code, std::uint32_t id,
                     [&] { return is_ended() || sending->is_begun; });
   if (!is_ended() && !sending->is_begun) {
     sending->is_given_up = true;
-    return failed(DataErrorKind::NotConnected, state_.why);
+    return failed(DataErrorKind::NotConnected, life_.now().why);
   }
   changed_.wait(held, is_ended);
   return *sending->ended;
@@ -382,6 +376,14 @@ std::uint64_t Subscription::missed() const { return impl_->missed_by(*subscribed
 Subscription DataConnection::subscribe(std::uint16_t code) const {
   return {impl_, impl_->subscribe(code)};
 }
+
+ConnectionState DataConnection::state() const { return impl_->life().now(); }
+
+ConnectionStates DataConnection::states() const {
+  return ConnectionStates({impl_, &impl_->life()});
+}
+
+Allowance DataConnection::allowance() const { return impl_->allowance(); }
 
 Result<Done, DataError> DataConnection::connected() const { return impl_->wait_for_connection(); }
 

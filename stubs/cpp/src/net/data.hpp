@@ -38,6 +38,8 @@ class DataImpl : public Companion, public std::enable_shared_from_this<DataImpl>
   [[nodiscard]] Result<StreamFrame, DataError> next_of(Subscribed& subscribed,
                                                        std::chrono::milliseconds wait);
   [[nodiscard]] std::uint64_t missed_by(const Subscribed& subscribed);
+  [[nodiscard]] const Life& life() const { return life_; }
+  [[nodiscard]] Allowance allowance() const { return commands_->limits().json(); }
   void post_close();
   void post_start();
 
@@ -64,6 +66,8 @@ class DataImpl : public Companion, public std::enable_shared_from_this<DataImpl>
   static void queue(Subscribed& subscribed, const Result<StreamFrame, DataError>& frame);
   void send_next();
   void watch();
+  [[nodiscard]] bool is_over() const;
+  [[nodiscard]] DataError none() const;
 
   ConnectionImpl* commands_;
   Dialler dialler_;
@@ -79,7 +83,7 @@ class DataImpl : public Companion, public std::enable_shared_from_this<DataImpl>
   std::mutex mutex_;
   std::condition_variable changed_;
   Encoder encoder_;
-  ConnectionState state_;
+  Life life_;
   std::deque<Result<StreamFrame, DataError>> inbox_;
   std::vector<std::weak_ptr<Subscribed>> subscriptions_;
   /// `true` if a caller takes frames of any code.
@@ -87,8 +91,8 @@ class DataImpl : public Companion, public std::enable_shared_from_this<DataImpl>
   std::deque<std::shared_ptr<Sending>> sending_;
   /// `true` if something was sent over this connection.
   bool has_sent_ = false;
-  /// `true` if sent frames may be lost and the sender does not know yet.
-  bool may_be_lost_ = false;
+  /// The loss of sent frames that the sender does not know yet.
+  std::optional<Loss> untold_loss_;
 };
 
 /// Opens a data connection. Destroying it closes it and releases the command connection.

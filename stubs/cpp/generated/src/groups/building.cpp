@@ -170,8 +170,8 @@ std::optional<fc_runtime::Handled> serve_building(BuildingRobot& robot, const fc
 }
 
 void add_building(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"list_iot_devices", std::uint16_t{0x0A07}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取物联网设备列表", "List the IoT devices of a type", std::nullopt, std::nullopt, fc_runtime::type_info<ListIotDevicesRequest>(), fc_runtime::type_info<ListIotDevicesResponse>()});
-  operations.push_back({"get_floors", std::uint16_t{0x03A1}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取楼层信息", "Get the floors", std::nullopt, std::nullopt, fc_runtime::type_info<GetFloorsRequest>(), fc_runtime::type_info<GetFloorsResponse>()});
+  operations.push_back({"list_iot_devices", std::uint16_t{0x0A07}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取物联网设备列表", "List the IoT devices of a type", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<ListIotDevicesRequest>(), fc_runtime::type_info<ListIotDevicesResponse>()});
+  operations.push_back({"get_floors", std::uint16_t{0x03A1}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取楼层信息", "Get the floors", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetFloorsRequest>(), fc_runtime::type_info<GetFloorsResponse>()});
 }
 
 }  // namespace fc::groups

@@ -286,8 +286,8 @@ std::optional<fc_runtime::Handled> serve_cell(CellRobot& robot, const fc_runtime
 }
 
 void add_cell(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"get_cell_config", std::uint16_t{0x0A02}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人格口门配置", "Get the compartment configuration", std::nullopt, std::nullopt, fc_runtime::type_info<GetCellConfigRequest>(), fc_runtime::type_info<GetCellConfigResponse>()});
-  operations.push_back({"set_cell_config", std::uint16_t{0x0A0B}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "设置机器人格口配置", "Set the compartment configuration", std::nullopt, std::nullopt, fc_runtime::type_info<SetCellConfigRequest>(), fc_runtime::type_info<SetCellConfigResponse>()});
+  operations.push_back({"get_cell_config", std::uint16_t{0x0A02}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人格口门配置", "Get the compartment configuration", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetCellConfigRequest>(), fc_runtime::type_info<GetCellConfigResponse>()});
+  operations.push_back({"set_cell_config", std::uint16_t{0x0A0B}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "设置机器人格口配置", "Set the compartment configuration", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<SetCellConfigRequest>(), fc_runtime::type_info<SetCellConfigResponse>()});
 }
 
 }  // namespace fc::groups

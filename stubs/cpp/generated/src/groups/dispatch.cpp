@@ -123,8 +123,8 @@ std::optional<fc_runtime::Handled> serve_dispatch(DispatchRobot& robot, const fc
 }
 
 void add_dispatch(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"upload_contended_resources", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "上传竞争资源到调度系统", "Upload contended resources to the dispatching system", std::nullopt, std::nullopt, fc_runtime::type_info<UploadContendedResourcesRequest>(), fc_runtime::type_info<UploadContendedResourcesResponse>()});
-  operations.push_back({"check_condition_0333", std::uint16_t{0x0333}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "检查条件是否满足（0x0333，用途不详）", "Check a condition (0x0333, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<CheckCondition0333Request>(), fc_runtime::type_info<CheckCondition0333Response>()});
+  operations.push_back({"upload_contended_resources", std::nullopt, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "上传竞争资源到调度系统", "Upload contended resources to the dispatching system", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<UploadContendedResourcesRequest>(), fc_runtime::type_info<UploadContendedResourcesResponse>()});
+  operations.push_back({"check_condition_0333", std::uint16_t{0x0333}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "检查条件是否满足（0x0333，用途不详）", "Check a condition (0x0333, purpose unknown)", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<CheckCondition0333Request>(), fc_runtime::type_info<CheckCondition0333Response>()});
 }
 
 }  // namespace fc::groups

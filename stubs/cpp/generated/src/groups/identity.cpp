@@ -125,8 +125,8 @@ std::optional<fc_runtime::Handled> serve_identity(IdentityRobot& robot, const fc
 }
 
 void add_identity(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"get_robot_sn", std::uint16_t{0x0A01}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人序列号", "Get the serial number", std::nullopt, std::nullopt, fc_runtime::type_info<GetRobotSnRequest>(), fc_runtime::type_info<GetRobotSnResponse>()});
-  operations.push_back({"get_firmware_versions", std::uint16_t{0x0A0A}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取固件版本", "Get the firmware versions", std::nullopt, std::nullopt, fc_runtime::type_info<GetFirmwareVersionsRequest>(), fc_runtime::type_info<GetFirmwareVersionsResponse>()});
+  operations.push_back({"get_robot_sn", std::uint16_t{0x0A01}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人序列号", "Get the serial number", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetRobotSnRequest>(), fc_runtime::type_info<GetRobotSnResponse>()});
+  operations.push_back({"get_firmware_versions", std::uint16_t{0x0A0A}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取固件版本", "Get the firmware versions", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetFirmwareVersionsRequest>(), fc_runtime::type_info<GetFirmwareVersionsResponse>()});
 }
 
 }  // namespace fc::groups

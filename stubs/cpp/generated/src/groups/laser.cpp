@@ -70,7 +70,7 @@ std::optional<fc_runtime::Handled> serve_laser(LaserRobot& robot, const fc_runti
 }
 
 void add_laser(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"get_laser_scan", std::uint16_t{0x0001}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取激光数据", "Get the lidar data", std::nullopt, std::nullopt, fc_runtime::type_info<GetLaserScanRequest>(), fc_runtime::type_info<GetLaserScanResponse>()});
+  operations.push_back({"get_laser_scan", std::uint16_t{0x0001}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取激光数据", "Get the lidar data", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetLaserScanRequest>(), fc_runtime::type_info<GetLaserScanResponse>()});
 }
 
 }  // namespace fc::groups

@@ -305,10 +305,10 @@ std::optional<fc_runtime::Handled> serve_recharge(RechargeRobot& robot, const fc
 }
 
 void add_recharge(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"start_recharge", std::uint16_t{0x0A04}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Motion, "发起一键回充", "Start returning to dock", std::nullopt, std::nullopt, fc_runtime::type_info<StartRechargeRequest>(), fc_runtime::type_info<StartRechargeResponse>()});
-  operations.push_back({"cancel_recharge", std::uint16_t{0x0A05}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Motion, "取消一键回充", "Cancel returning to dock", std::nullopt, std::nullopt, fc_runtime::type_info<CancelRechargeRequest>(), fc_runtime::type_info<CancelRechargeResponse>()});
-  operations.push_back({"get_recharge_status", std::uint16_t{0x0A06}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取回充状态", "Get the charging state", std::nullopt, std::nullopt, fc_runtime::type_info<GetRechargeStatusRequest>(), fc_runtime::type_info<GetRechargeStatusResponse>()});
-  operations.push_back({"recharge_progress", std::uint16_t{0x0B01}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "主动上报回充过程和结果", "Progress and result of charging", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<RechargeProgress>(), fc_runtime::type_info<RechargeProgressAck>()});
+  operations.push_back({"start_recharge", std::uint16_t{0x0A04}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Motion, "发起一键回充", "Start returning to dock", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<StartRechargeRequest>(), fc_runtime::type_info<StartRechargeResponse>()});
+  operations.push_back({"cancel_recharge", std::uint16_t{0x0A05}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Motion, "取消一键回充", "Cancel returning to dock", std::nullopt, fc_runtime::Preconditions{true, {}, {}}, std::nullopt, fc_runtime::type_info<CancelRechargeRequest>(), fc_runtime::type_info<CancelRechargeResponse>()});
+  operations.push_back({"get_recharge_status", std::uint16_t{0x0A06}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取回充状态", "Get the charging state", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetRechargeStatusRequest>(), fc_runtime::type_info<GetRechargeStatusResponse>()});
+  operations.push_back({"recharge_progress", std::uint16_t{0x0B01}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "主动上报回充过程和结果", "Progress and result of charging", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::Cadence{fc_runtime::CadenceKind::OnChange, "data.rechargeStatus", 0, {}}, fc_runtime::type_info<RechargeProgress>(), fc_runtime::type_info<RechargeProgressAck>()});
 }
 
 }  // namespace fc::groups

@@ -256,9 +256,9 @@ std::optional<fc_runtime::Handled> serve_settings(SettingsRobot& robot, const fc
 }
 
 void add_settings(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"switch_0a08", std::uint16_t{0x0A08}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "读取或设置开关（0x0A08，用途不详）", "Read or set a switch (0x0A08, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<Switch0a08Request>(), fc_runtime::type_info<Switch0a08Response>()});
-  operations.push_back({"set_voice_reminder", std::uint16_t{0x0A09}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "语音提醒的开关", "Voice reminder switch", std::nullopt, std::nullopt, fc_runtime::type_info<SetVoiceReminderRequest>(), fc_runtime::type_info<SetVoiceReminderResponse>()});
-  operations.push_back({"switch_environment", std::uint16_t{0x03A0}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "切换业务环境", "Switch the environment", std::nullopt, std::nullopt, fc_runtime::type_info<SwitchEnvironmentRequest>(), fc_runtime::type_info<SwitchEnvironmentResponse>()});
+  operations.push_back({"switch_0a08", std::uint16_t{0x0A08}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "读取或设置开关（0x0A08，用途不详）", "Read or set a switch (0x0A08, purpose unknown)", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<Switch0a08Request>(), fc_runtime::type_info<Switch0a08Response>()});
+  operations.push_back({"set_voice_reminder", std::uint16_t{0x0A09}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "语音提醒的开关", "Voice reminder switch", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<SetVoiceReminderRequest>(), fc_runtime::type_info<SetVoiceReminderResponse>()});
+  operations.push_back({"switch_environment", std::uint16_t{0x03A0}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "切换业务环境", "Switch the environment", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<SwitchEnvironmentRequest>(), fc_runtime::type_info<SwitchEnvironmentResponse>()});
 }
 
 }  // namespace fc::groups

@@ -220,10 +220,10 @@ std::optional<fc_runtime::Handled> serve_standby(StandbyRobot& robot, const fc_r
 }
 
 void add_standby(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"set_standby_position", std::uint16_t{0x0311}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "设置机器人待命时的位置", "Set the standby position", std::nullopt, std::nullopt, fc_runtime::type_info<SetStandbyPositionRequest>(), fc_runtime::type_info<SetStandbyPositionResponse>()});
-  operations.push_back({"get_standby_position", std::uint16_t{0x0312}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人待命时的位置", "Get the standby position", std::nullopt, std::nullopt, fc_runtime::type_info<GetStandbyPositionRequest>(), fc_runtime::type_info<GetStandbyPositionResponse>()});
-  operations.push_back({"set_positions_0313", std::uint16_t{0x0313}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "设置点位（0x0313，用途不详）", "Set points (0x0313, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<SetPositions0313Request>(), fc_runtime::type_info<SetPositions0313Response>()});
-  operations.push_back({"get_positions_0314", std::uint16_t{0x0314}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "获取点位（0x0314，用途不详）", "Get points (0x0314, purpose unknown)", std::nullopt, std::nullopt, fc_runtime::type_info<GetPositions0314Request>(), fc_runtime::type_info<GetPositions0314Response>()});
+  operations.push_back({"set_standby_position", std::uint16_t{0x0311}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Config, "设置机器人待命时的位置", "Set the standby position", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<SetStandbyPositionRequest>(), fc_runtime::type_info<SetStandbyPositionResponse>()});
+  operations.push_back({"get_standby_position", std::uint16_t{0x0312}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取机器人待命时的位置", "Get the standby position", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetStandbyPositionRequest>(), fc_runtime::type_info<GetStandbyPositionResponse>()});
+  operations.push_back({"set_positions_0313", std::uint16_t{0x0313}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "设置点位（0x0313，用途不详）", "Set points (0x0313, purpose unknown)", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<SetPositions0313Request>(), fc_runtime::type_info<SetPositions0313Response>()});
+  operations.push_back({"get_positions_0314", std::uint16_t{0x0314}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "获取点位（0x0314，用途不详）", "Get points (0x0314, purpose unknown)", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetPositions0314Request>(), fc_runtime::type_info<GetPositions0314Response>()});
 }
 
 }  // namespace fc::groups

@@ -343,9 +343,9 @@ std::optional<fc_runtime::Handled> serve_status(StatusRobot& robot, const fc_run
 }
 
 void add_status(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"list_faults", std::uint16_t{0x0A0C}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取异常列表", "List the faults", std::nullopt, std::nullopt, fc_runtime::type_info<ListFaultsRequest>(), fc_runtime::type_info<ListFaultsResponse>()});
-  operations.push_back({"get_self_check", std::uint16_t{0x0A0D}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取自检结果", "Get the result of the self-check", std::nullopt, std::nullopt, fc_runtime::type_info<GetSelfCheckRequest>(), fc_runtime::type_info<GetSelfCheckResponse>()});
-  operations.push_back({"robot_status", std::uint16_t{0x0342}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "主动上报机器人状态", "Status of the robot", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, fc_runtime::type_info<RobotStatus>(), fc_runtime::type_info<RobotStatusAck>()});
+  operations.push_back({"list_faults", std::uint16_t{0x0A0C}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取异常列表", "List the faults", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<ListFaultsRequest>(), fc_runtime::type_info<ListFaultsResponse>()});
+  operations.push_back({"get_self_check", std::uint16_t{0x0A0D}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "获取自检结果", "Get the result of the self-check", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetSelfCheckRequest>(), fc_runtime::type_info<GetSelfCheckResponse>()});
+  operations.push_back({"robot_status", std::uint16_t{0x0342}, fc_runtime::OperationKind::Report, fc_runtime::Effect::Unknown, "主动上报机器人状态", "Status of the robot", fc_runtime::AckPolicy{std::chrono::milliseconds(2000), 3}, std::nullopt, std::nullopt, fc_runtime::type_info<RobotStatus>(), fc_runtime::type_info<RobotStatusAck>()});
 }
 
 }  // namespace fc::groups

@@ -105,8 +105,8 @@ std::optional<fc_runtime::Handled> serve_unnamed(UnnamedRobot& robot, const fc_r
 }
 
 void add_unnamed(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"unnamed_0309", std::uint16_t{0x0309}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "未命名指令（0x0309）", "Unnamed command (0x0309)", std::nullopt, std::nullopt, fc_runtime::type_info<Unnamed0309Request>(), fc_runtime::type_info<Unnamed0309Response>()});
-  operations.push_back({"unnamed_0460", std::uint16_t{0x0460}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "未命名指令（0x0460）", "Unnamed command (0x0460)", std::nullopt, std::nullopt, fc_runtime::type_info<Unnamed0460Request>(), fc_runtime::type_info<Unnamed0460Response>()});
+  operations.push_back({"unnamed_0309", std::uint16_t{0x0309}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "未命名指令（0x0309）", "Unnamed command (0x0309)", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<Unnamed0309Request>(), fc_runtime::type_info<Unnamed0309Response>()});
+  operations.push_back({"unnamed_0460", std::uint16_t{0x0460}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Unknown, "未命名指令（0x0460）", "Unnamed command (0x0460)", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<Unnamed0460Request>(), fc_runtime::type_info<Unnamed0460Response>()});
 }
 
 }  // namespace fc::groups

@@ -117,7 +117,7 @@ std::optional<fc_runtime::Handled> serve_upper_body(UpperBodyRobot& robot, const
 }
 
 void add_upper_body(std::vector<fc_runtime::OperationInfo>& operations) {
-  operations.push_back({"get_upper_body_status", std::uint16_t{0x0204}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "查询上装", "Get the upper body's status", std::nullopt, std::nullopt, fc_runtime::type_info<GetUpperBodyStatusRequest>(), fc_runtime::type_info<GetUpperBodyStatusResponse>()});
+  operations.push_back({"get_upper_body_status", std::uint16_t{0x0204}, fc_runtime::OperationKind::Command, fc_runtime::Effect::Read, "查询上装", "Get the upper body's status", std::nullopt, std::nullopt, std::nullopt, fc_runtime::type_info<GetUpperBodyStatusRequest>(), fc_runtime::type_info<GetUpperBodyStatusResponse>()});
 }
 
 }  // namespace fc::groups

@@ -18,6 +18,7 @@ import fc.runtime.TextEnumType
 import fc.runtime.TextValue
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 楼宇：`Operations` 中的一部分。
@@ -244,6 +245,36 @@ internal class BuildingExample(pretendMotion: Boolean) :
 
     override suspend fun getFloors(context: Context, request: GetFloorsRequest): GetFloorsResponse =
         GetFloorsResponse.example()
+}
+
+/**
+ * 楼宇：`AsyncRobot` 中的一部分。
+ * Building: its part of `AsyncRobot`.
+ */
+public interface BuildingAsyncHandlers {
+    /** [BuildingHandlers.listIotDevices]，供 Java 使用。[BuildingHandlers.listIotDevices] for Java. */
+    public fun listIotDevices(context: Context, request: ListIotDevicesRequest): CompletionStage<ListIotDevicesResponse>
+
+    /** [BuildingHandlers.getFloors]，供 Java 使用。[BuildingHandlers.getFloors] for Java. */
+    public fun getFloors(context: Context, request: GetFloorsRequest): CompletionStage<GetFloorsResponse>
+}
+
+/**
+ * 楼宇：`PartialAsyncRobot` 中的一部分。
+ * Building: its part of `PartialAsyncRobot`.
+ */
+public interface BuildingAsyncPartial : BuildingAsyncHandlers {
+    override fun listIotDevices(context: Context, request: ListIotDevicesRequest): CompletionStage<ListIotDevicesResponse> =
+        throw context.notImplemented()
+
+    override fun getFloors(context: Context, request: GetFloorsRequest): CompletionStage<GetFloorsResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onBuilding(robot: BuildingAsyncHandlers): Service = apply {
+    onAsync(Operations.listIotDevices, robot::listIotDevices)
+    onAsync(Operations.getFloors, robot::getFloors)
 }
 
 /**

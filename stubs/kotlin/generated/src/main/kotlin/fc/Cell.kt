@@ -21,6 +21,7 @@ import fc.runtime.TextEnumType
 import fc.runtime.TextValue
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 格口：`Operations` 中的一部分。
@@ -277,6 +278,36 @@ internal class CellExample(pretendMotion: Boolean) :
 
     override suspend fun setCellConfig(context: Context, request: SetCellConfigRequest): SetCellConfigResponse =
         SetCellConfigResponse.example()
+}
+
+/**
+ * 格口：`AsyncRobot` 中的一部分。
+ * Compartments: its part of `AsyncRobot`.
+ */
+public interface CellAsyncHandlers {
+    /** [CellHandlers.getCellConfig]，供 Java 使用。[CellHandlers.getCellConfig] for Java. */
+    public fun getCellConfig(context: Context, request: GetCellConfigRequest): CompletionStage<GetCellConfigResponse>
+
+    /** [CellHandlers.setCellConfig]，供 Java 使用。[CellHandlers.setCellConfig] for Java. */
+    public fun setCellConfig(context: Context, request: SetCellConfigRequest): CompletionStage<SetCellConfigResponse>
+}
+
+/**
+ * 格口：`PartialAsyncRobot` 中的一部分。
+ * Compartments: its part of `PartialAsyncRobot`.
+ */
+public interface CellAsyncPartial : CellAsyncHandlers {
+    override fun getCellConfig(context: Context, request: GetCellConfigRequest): CompletionStage<GetCellConfigResponse> =
+        throw context.notImplemented()
+
+    override fun setCellConfig(context: Context, request: SetCellConfigRequest): CompletionStage<SetCellConfigResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onCell(robot: CellAsyncHandlers): Service = apply {
+    onAsync(Operations.getCellConfig, robot::getCellConfig)
+    onAsync(Operations.setCellConfig, robot::setCellConfig)
 }
 
 /**

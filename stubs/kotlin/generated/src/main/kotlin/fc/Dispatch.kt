@@ -15,6 +15,7 @@ import fc.runtime.MessageType
 import fc.runtime.Service
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 调度：`Operations` 中的一部分。
@@ -155,6 +156,29 @@ internal class DispatchExample(pretendMotion: Boolean) :
     DispatchHandlers {
     override suspend fun checkCondition0333(context: Context, request: CheckCondition0333Request): CheckCondition0333Response =
         pretended(context, CheckCondition0333Response)
+}
+
+/**
+ * 调度：`AsyncRobot` 中的一部分。
+ * Dispatching: its part of `AsyncRobot`.
+ */
+public interface DispatchAsyncHandlers {
+    /** [DispatchHandlers.checkCondition0333]，供 Java 使用。[DispatchHandlers.checkCondition0333] for Java. */
+    public fun checkCondition0333(context: Context, request: CheckCondition0333Request): CompletionStage<CheckCondition0333Response>
+}
+
+/**
+ * 调度：`PartialAsyncRobot` 中的一部分。
+ * Dispatching: its part of `PartialAsyncRobot`.
+ */
+public interface DispatchAsyncPartial : DispatchAsyncHandlers {
+    override fun checkCondition0333(context: Context, request: CheckCondition0333Request): CompletionStage<CheckCondition0333Response> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onDispatch(robot: DispatchAsyncHandlers): Service = apply {
+    onAsync(Operations.checkCondition0333, robot::checkCondition0333)
 }
 
 /**

@@ -15,6 +15,7 @@ import fc.runtime.MessageType
 import fc.runtime.Service
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 机器人信息：`Operations` 中的一部分。
@@ -254,6 +255,36 @@ internal class IdentityExample(pretendMotion: Boolean) :
 
     override suspend fun getFirmwareVersions(context: Context, request: GetFirmwareVersionsRequest): GetFirmwareVersionsResponse =
         GetFirmwareVersionsResponse.example()
+}
+
+/**
+ * 机器人信息：`AsyncRobot` 中的一部分。
+ * Identity and versions: its part of `AsyncRobot`.
+ */
+public interface IdentityAsyncHandlers {
+    /** [IdentityHandlers.getRobotSn]，供 Java 使用。[IdentityHandlers.getRobotSn] for Java. */
+    public fun getRobotSn(context: Context, request: GetRobotSnRequest): CompletionStage<GetRobotSnResponse>
+
+    /** [IdentityHandlers.getFirmwareVersions]，供 Java 使用。[IdentityHandlers.getFirmwareVersions] for Java. */
+    public fun getFirmwareVersions(context: Context, request: GetFirmwareVersionsRequest): CompletionStage<GetFirmwareVersionsResponse>
+}
+
+/**
+ * 机器人信息：`PartialAsyncRobot` 中的一部分。
+ * Identity and versions: its part of `PartialAsyncRobot`.
+ */
+public interface IdentityAsyncPartial : IdentityAsyncHandlers {
+    override fun getRobotSn(context: Context, request: GetRobotSnRequest): CompletionStage<GetRobotSnResponse> =
+        throw context.notImplemented()
+
+    override fun getFirmwareVersions(context: Context, request: GetFirmwareVersionsRequest): CompletionStage<GetFirmwareVersionsResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onIdentity(robot: IdentityAsyncHandlers): Service = apply {
+    onAsync(Operations.getRobotSn, robot::getRobotSn)
+    onAsync(Operations.getFirmwareVersions, robot::getFirmwareVersions)
 }
 
 /**

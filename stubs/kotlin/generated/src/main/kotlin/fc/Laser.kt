@@ -15,6 +15,7 @@ import fc.runtime.MessageType
 import fc.runtime.Service
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 激光雷达：`Operations` 中的一部分。
@@ -145,6 +146,29 @@ internal class LaserExample(pretendMotion: Boolean) :
     LaserHandlers {
     override suspend fun getLaserScan(context: Context, request: GetLaserScanRequest): GetLaserScanResponse =
         GetLaserScanResponse.example()
+}
+
+/**
+ * 激光雷达：`AsyncRobot` 中的一部分。
+ * Lidar: its part of `AsyncRobot`.
+ */
+public interface LaserAsyncHandlers {
+    /** [LaserHandlers.getLaserScan]，供 Java 使用。[LaserHandlers.getLaserScan] for Java. */
+    public fun getLaserScan(context: Context, request: GetLaserScanRequest): CompletionStage<GetLaserScanResponse>
+}
+
+/**
+ * 激光雷达：`PartialAsyncRobot` 中的一部分。
+ * Lidar: its part of `PartialAsyncRobot`.
+ */
+public interface LaserAsyncPartial : LaserAsyncHandlers {
+    override fun getLaserScan(context: Context, request: GetLaserScanRequest): CompletionStage<GetLaserScanResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onLaser(robot: LaserAsyncHandlers): Service = apply {
+    onAsync(Operations.getLaserScan, robot::getLaserScan)
 }
 
 /**

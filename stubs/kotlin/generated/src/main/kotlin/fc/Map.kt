@@ -7,6 +7,7 @@ import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
 import fc.runtime.Bytes
+import fc.runtime.Cadence
 import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
@@ -25,6 +26,7 @@ import fc.runtime.Server
 import fc.runtime.Service
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 地图：`Operations` 中的一部分。
@@ -267,6 +269,7 @@ public interface MapOperations {
             Report("map_sync_progress", 0x0343, MapSyncProgress, MapSyncProgressAck)
                 .titled("上报地图同步进度", "Progress of map synchronisation")
                 .ack(AckPolicy(2000, 3))
+                .cadence(Cadence.Step("syncMapList.progress", 5.0))
 
         internal fun commands(): List<Command<*, *>> =
             listOf(
@@ -483,6 +486,13 @@ public interface MapClient {
     ): Following<DownloadMapsResponse, MapSyncProgress> =
         connection.follow(Operations.downloadMaps, request, Operations.mapSyncProgress, options)
 
+    /** [downloadMapsFollowed]，供 Java 使用。[downloadMapsFollowed] for Java. */
+    public fun downloadMapsFollowedAsync(
+        request: DownloadMapsRequest,
+        options: CallOptions,
+    ): CompletableFuture<Following<DownloadMapsResponse, MapSyncProgress>> =
+        connection.future { downloadMapsFollowed(request, options) }
+
     /**
      * 上传地图
      * Upload maps
@@ -542,6 +552,13 @@ public interface MapClient {
         options: CallOptions = CallOptions(),
     ): Following<UploadMapsResponse, MapSyncProgress> =
         connection.follow(Operations.uploadMaps, request, Operations.mapSyncProgress, options)
+
+    /** [uploadMapsFollowed]，供 Java 使用。[uploadMapsFollowed] for Java. */
+    public fun uploadMapsFollowedAsync(
+        request: UploadMapsRequest,
+        options: CallOptions,
+    ): CompletableFuture<Following<UploadMapsResponse, MapSyncProgress>> =
+        connection.future { uploadMapsFollowed(request, options) }
 
     /**
      * 获取正在同步的地图进度
@@ -778,6 +795,71 @@ internal class MapExample(pretendMotion: Boolean) :
 
     override suspend fun getMapSyncProgress(context: Context, request: GetMapSyncProgressRequest): GetMapSyncProgressResponse =
         GetMapSyncProgressResponse.example()
+}
+
+/**
+ * 地图：`AsyncRobot` 中的一部分。
+ * Maps: its part of `AsyncRobot`.
+ */
+public interface MapAsyncHandlers {
+    /** [MapHandlers.getMapImage]，供 Java 使用。[MapHandlers.getMapImage] for Java. */
+    public fun getMapImage(context: Context, request: GetMapImageRequest): CompletionStage<GetMapImageResponse>
+
+    /** [MapHandlers.listMaps]，供 Java 使用。[MapHandlers.listMaps] for Java. */
+    public fun listMaps(context: Context, request: ListMapsRequest): CompletionStage<ListMapsResponse>
+
+    /** [MapHandlers.getMapInfo]，供 Java 使用。[MapHandlers.getMapInfo] for Java. */
+    public fun getMapInfo(context: Context, request: GetMapInfoRequest): CompletionStage<GetMapInfoResponse>
+
+    /** [MapHandlers.saveMap]，供 Java 使用。[MapHandlers.saveMap] for Java. */
+    public fun saveMap(context: Context, request: SaveMapRequest): CompletionStage<SaveMapResponse>
+
+    /** [MapHandlers.downloadMaps]，供 Java 使用。[MapHandlers.downloadMaps] for Java. */
+    public fun downloadMaps(context: Context, request: DownloadMapsRequest): CompletionStage<DownloadMapsResponse>
+
+    /** [MapHandlers.uploadMaps]，供 Java 使用。[MapHandlers.uploadMaps] for Java. */
+    public fun uploadMaps(context: Context, request: UploadMapsRequest): CompletionStage<UploadMapsResponse>
+
+    /** [MapHandlers.getMapSyncProgress]，供 Java 使用。[MapHandlers.getMapSyncProgress] for Java. */
+    public fun getMapSyncProgress(context: Context, request: GetMapSyncProgressRequest): CompletionStage<GetMapSyncProgressResponse>
+}
+
+/**
+ * 地图：`PartialAsyncRobot` 中的一部分。
+ * Maps: its part of `PartialAsyncRobot`.
+ */
+public interface MapAsyncPartial : MapAsyncHandlers {
+    override fun getMapImage(context: Context, request: GetMapImageRequest): CompletionStage<GetMapImageResponse> =
+        throw context.notImplemented()
+
+    override fun listMaps(context: Context, request: ListMapsRequest): CompletionStage<ListMapsResponse> =
+        throw context.notImplemented()
+
+    override fun getMapInfo(context: Context, request: GetMapInfoRequest): CompletionStage<GetMapInfoResponse> =
+        throw context.notImplemented()
+
+    override fun saveMap(context: Context, request: SaveMapRequest): CompletionStage<SaveMapResponse> =
+        throw context.notImplemented()
+
+    override fun downloadMaps(context: Context, request: DownloadMapsRequest): CompletionStage<DownloadMapsResponse> =
+        throw context.notImplemented()
+
+    override fun uploadMaps(context: Context, request: UploadMapsRequest): CompletionStage<UploadMapsResponse> =
+        throw context.notImplemented()
+
+    override fun getMapSyncProgress(context: Context, request: GetMapSyncProgressRequest): CompletionStage<GetMapSyncProgressResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onMap(robot: MapAsyncHandlers): Service = apply {
+    onAsync(Operations.getMapImage, robot::getMapImage)
+    onAsync(Operations.listMaps, robot::listMaps)
+    onAsync(Operations.getMapInfo, robot::getMapInfo)
+    onAsync(Operations.saveMap, robot::saveMap)
+    onAsync(Operations.downloadMaps, robot::downloadMaps)
+    onAsync(Operations.uploadMaps, robot::uploadMaps)
+    onAsync(Operations.getMapSyncProgress, robot::getMapSyncProgress)
 }
 
 /**

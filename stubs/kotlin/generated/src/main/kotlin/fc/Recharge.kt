@@ -6,6 +6,7 @@ package fc
 import fc.runtime.AckPolicy
 import fc.runtime.Acknowledgement
 import fc.runtime.Audience
+import fc.runtime.Cadence
 import fc.runtime.CallOptions
 import fc.runtime.Command
 import fc.runtime.Connection
@@ -27,6 +28,7 @@ import fc.runtime.StateOrder
 import fc.runtime.Steps
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 回充：`Operations` 中的一部分。
@@ -139,6 +141,7 @@ public interface RechargeOperations {
         public val cancelRecharge: Command<CancelRechargeRequest, CancelRechargeResponse> =
             Command("cancel_recharge", 0x0A05, Effect.MOTION, CancelRechargeRequest, CancelRechargeResponse)
                 .titled("取消一键回充", "Cancel returning to dock")
+                .acceptedAlways()
 
         /**
          * 获取回充状态
@@ -166,6 +169,7 @@ public interface RechargeOperations {
             Report("recharge_progress", 0x0B01, RechargeProgress, RechargeProgressAck)
                 .titled("主动上报回充过程和结果", "Progress and result of charging")
                 .ack(AckPolicy(2000, 3))
+                .cadence(Cadence.OnChange("data.rechargeStatus"))
                 .state { report -> report.data.rechargeStatus }
                 .failure { report -> (report.data.rechargeStatus as State?)?.isError == true || (report.data.errorStatus as State?)?.isError == true }
 
@@ -252,6 +256,13 @@ public interface RechargeClient {
         options: CallOptions = CallOptions(),
     ): Following<StartRechargeResponse, RechargeProgress> =
         connection.follow(Operations.startRecharge, request, Operations.rechargeProgress, options)
+
+    /** [startRechargeFollowed]，供 Java 使用。[startRechargeFollowed] for Java. */
+    public fun startRechargeFollowedAsync(
+        request: StartRechargeRequest,
+        options: CallOptions,
+    ): CompletableFuture<Following<StartRechargeResponse, RechargeProgress>> =
+        connection.future { startRechargeFollowed(request, options) }
 
     /**
      * 取消一键回充
@@ -430,6 +441,43 @@ internal class RechargeExample(pretendMotion: Boolean) :
 
     override suspend fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): GetRechargeStatusResponse =
         GetRechargeStatusResponse.example()
+}
+
+/**
+ * 回充：`AsyncRobot` 中的一部分。
+ * Return to dock: its part of `AsyncRobot`.
+ */
+public interface RechargeAsyncHandlers {
+    /** [RechargeHandlers.startRecharge]，供 Java 使用。[RechargeHandlers.startRecharge] for Java. */
+    public fun startRecharge(context: Context, request: StartRechargeRequest): CompletionStage<StartRechargeResponse>
+
+    /** [RechargeHandlers.cancelRecharge]，供 Java 使用。[RechargeHandlers.cancelRecharge] for Java. */
+    public fun cancelRecharge(context: Context, request: CancelRechargeRequest): CompletionStage<CancelRechargeResponse>
+
+    /** [RechargeHandlers.getRechargeStatus]，供 Java 使用。[RechargeHandlers.getRechargeStatus] for Java. */
+    public fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): CompletionStage<GetRechargeStatusResponse>
+}
+
+/**
+ * 回充：`PartialAsyncRobot` 中的一部分。
+ * Return to dock: its part of `PartialAsyncRobot`.
+ */
+public interface RechargeAsyncPartial : RechargeAsyncHandlers {
+    override fun startRecharge(context: Context, request: StartRechargeRequest): CompletionStage<StartRechargeResponse> =
+        throw context.notImplemented()
+
+    override fun cancelRecharge(context: Context, request: CancelRechargeRequest): CompletionStage<CancelRechargeResponse> =
+        throw context.notImplemented()
+
+    override fun getRechargeStatus(context: Context, request: GetRechargeStatusRequest): CompletionStage<GetRechargeStatusResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onRecharge(robot: RechargeAsyncHandlers): Service = apply {
+    onAsync(Operations.startRecharge, robot::startRecharge)
+    onAsync(Operations.cancelRecharge, robot::cancelRecharge)
+    onAsync(Operations.getRechargeStatus, robot::getRechargeStatus)
 }
 
 /**

@@ -9,6 +9,7 @@ import fc.runtime.MessageType
 import fc.runtime.RawRequest
 import fc.runtime.Server
 import fc.runtime.Service
+import java.util.concurrent.CompletionStage
 
 /**
  * 完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。只实现了一部分指令的机器人，改为实现
@@ -141,6 +142,72 @@ public fun Robot.service(): Service =
         .onUpperBody(this)
         .onRange(0x0200, 0x0300) { context, request -> passThrough(context, request) }
         .onUnknown { context, request -> unknown(context, request) }
+
+/**
+ * `Robot` 的 Java 形式：处理程序返回 future。用 `Refusal.toFuture` 拒绝指令。
+ * `Robot` for Java: handlers return futures. `Refusal.toFuture` refuses a command.
+ */
+public interface AsyncRobot :
+    BuildingAsyncHandlers,
+    CellAsyncHandlers,
+    DispatchAsyncHandlers,
+    IdentityAsyncHandlers,
+    LaserAsyncHandlers,
+    MapAsyncHandlers,
+    RechargeAsyncHandlers,
+    SettingsAsyncHandlers,
+    StandbyAsyncHandlers,
+    StationAsyncHandlers,
+    StatusAsyncHandlers,
+    TaskAsyncHandlers,
+    UnnamedAsyncHandlers,
+    UpperBodyAsyncHandlers {
+    /** [Robot.passThrough] */
+    public fun passThrough(context: Context, request: RawRequest): CompletionStage<Json> =
+        throw context.unknown()
+
+    /** [Robot.unknown] */
+    public fun unknown(context: Context, request: RawRequest): CompletionStage<Json> =
+        throw context.unknown()
+}
+
+/** [PartialRobot]，供 Java 使用。[PartialRobot] for Java. */
+public interface PartialAsyncRobot :
+    AsyncRobot,
+    BuildingAsyncPartial,
+    CellAsyncPartial,
+    DispatchAsyncPartial,
+    IdentityAsyncPartial,
+    LaserAsyncPartial,
+    MapAsyncPartial,
+    RechargeAsyncPartial,
+    SettingsAsyncPartial,
+    StandbyAsyncPartial,
+    StationAsyncPartial,
+    StatusAsyncPartial,
+    TaskAsyncPartial,
+    UnnamedAsyncPartial,
+    UpperBodyAsyncPartial
+
+/** [Robot.service]，供 Java 使用。[Robot.service] for Java. */
+public fun AsyncRobot.service(): Service =
+    Service()
+        .onBuilding(this)
+        .onCell(this)
+        .onDispatch(this)
+        .onIdentity(this)
+        .onLaser(this)
+        .onMap(this)
+        .onRecharge(this)
+        .onSettings(this)
+        .onStandby(this)
+        .onStation(this)
+        .onStatus(this)
+        .onTask(this)
+        .onUnnamed(this)
+        .onUpperBody(this)
+        .onRangeAsync(0x0200, 0x0300, ::passThrough)
+        .onUnknownAsync(::unknown)
 
 /**
  * 发送上报：每种上报一个方法，等到每个 app 应答，或者不会再应答。

@@ -17,6 +17,7 @@ import fc.runtime.Service
 import fc.runtime.TextEnumType
 import fc.runtime.TextValue
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 开关与设置：`Operations` 中的一部分。
@@ -354,6 +355,43 @@ internal class SettingsExample(pretendMotion: Boolean) :
 
     override suspend fun switchEnvironment(context: Context, request: SwitchEnvironmentRequest): SwitchEnvironmentResponse =
         SwitchEnvironmentResponse.example()
+}
+
+/**
+ * 开关与设置：`AsyncRobot` 中的一部分。
+ * Switches and settings: its part of `AsyncRobot`.
+ */
+public interface SettingsAsyncHandlers {
+    /** [SettingsHandlers.switch0a08]，供 Java 使用。[SettingsHandlers.switch0a08] for Java. */
+    public fun switch0a08(context: Context, request: Switch0a08Request): CompletionStage<Switch0a08Response>
+
+    /** [SettingsHandlers.setVoiceReminder]，供 Java 使用。[SettingsHandlers.setVoiceReminder] for Java. */
+    public fun setVoiceReminder(context: Context, request: SetVoiceReminderRequest): CompletionStage<SetVoiceReminderResponse>
+
+    /** [SettingsHandlers.switchEnvironment]，供 Java 使用。[SettingsHandlers.switchEnvironment] for Java. */
+    public fun switchEnvironment(context: Context, request: SwitchEnvironmentRequest): CompletionStage<SwitchEnvironmentResponse>
+}
+
+/**
+ * 开关与设置：`PartialAsyncRobot` 中的一部分。
+ * Switches and settings: its part of `PartialAsyncRobot`.
+ */
+public interface SettingsAsyncPartial : SettingsAsyncHandlers {
+    override fun switch0a08(context: Context, request: Switch0a08Request): CompletionStage<Switch0a08Response> =
+        throw context.notImplemented()
+
+    override fun setVoiceReminder(context: Context, request: SetVoiceReminderRequest): CompletionStage<SetVoiceReminderResponse> =
+        throw context.notImplemented()
+
+    override fun switchEnvironment(context: Context, request: SwitchEnvironmentRequest): CompletionStage<SwitchEnvironmentResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onSettings(robot: SettingsAsyncHandlers): Service = apply {
+    onAsync(Operations.switch0a08, robot::switch0a08)
+    onAsync(Operations.setVoiceReminder, robot::setVoiceReminder)
+    onAsync(Operations.switchEnvironment, robot::switchEnvironment)
 }
 
 /**

@@ -15,6 +15,7 @@ import fc.runtime.MessageType
 import fc.runtime.Service
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 待命位置：`Operations` 中的一部分。
@@ -410,6 +411,50 @@ internal class StandbyExample(pretendMotion: Boolean) :
 
     override suspend fun getPositions0314(context: Context, request: GetPositions0314Request): GetPositions0314Response =
         pretended(context, GetPositions0314Response)
+}
+
+/**
+ * 待命位置：`AsyncRobot` 中的一部分。
+ * Standby position: its part of `AsyncRobot`.
+ */
+public interface StandbyAsyncHandlers {
+    /** [StandbyHandlers.setStandbyPosition]，供 Java 使用。[StandbyHandlers.setStandbyPosition] for Java. */
+    public fun setStandbyPosition(context: Context, request: SetStandbyPositionRequest): CompletionStage<SetStandbyPositionResponse>
+
+    /** [StandbyHandlers.getStandbyPosition]，供 Java 使用。[StandbyHandlers.getStandbyPosition] for Java. */
+    public fun getStandbyPosition(context: Context, request: GetStandbyPositionRequest): CompletionStage<GetStandbyPositionResponse>
+
+    /** [StandbyHandlers.setPositions0313]，供 Java 使用。[StandbyHandlers.setPositions0313] for Java. */
+    public fun setPositions0313(context: Context, request: SetPositions0313Request): CompletionStage<SetPositions0313Response>
+
+    /** [StandbyHandlers.getPositions0314]，供 Java 使用。[StandbyHandlers.getPositions0314] for Java. */
+    public fun getPositions0314(context: Context, request: GetPositions0314Request): CompletionStage<GetPositions0314Response>
+}
+
+/**
+ * 待命位置：`PartialAsyncRobot` 中的一部分。
+ * Standby position: its part of `PartialAsyncRobot`.
+ */
+public interface StandbyAsyncPartial : StandbyAsyncHandlers {
+    override fun setStandbyPosition(context: Context, request: SetStandbyPositionRequest): CompletionStage<SetStandbyPositionResponse> =
+        throw context.notImplemented()
+
+    override fun getStandbyPosition(context: Context, request: GetStandbyPositionRequest): CompletionStage<GetStandbyPositionResponse> =
+        throw context.notImplemented()
+
+    override fun setPositions0313(context: Context, request: SetPositions0313Request): CompletionStage<SetPositions0313Response> =
+        throw context.notImplemented()
+
+    override fun getPositions0314(context: Context, request: GetPositions0314Request): CompletionStage<GetPositions0314Response> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onStandby(robot: StandbyAsyncHandlers): Service = apply {
+    onAsync(Operations.setStandbyPosition, robot::setStandbyPosition)
+    onAsync(Operations.getStandbyPosition, robot::getStandbyPosition)
+    onAsync(Operations.setPositions0313, robot::setPositions0313)
+    onAsync(Operations.getPositions0314, robot::getPositions0314)
 }
 
 /**

@@ -19,6 +19,7 @@ import fc.runtime.TextEnumType
 import fc.runtime.TextValue
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 站点：`Operations` 中的一部分。
@@ -477,6 +478,57 @@ internal class StationExample(pretendMotion: Boolean) :
 
     override suspend fun renameStation(context: Context, request: RenameStationRequest): RenameStationResponse =
         RenameStationResponse.example()
+}
+
+/**
+ * 站点：`AsyncRobot` 中的一部分。
+ * Stations: its part of `AsyncRobot`.
+ */
+public interface StationAsyncHandlers {
+    /** [StationHandlers.getStation]，供 Java 使用。[StationHandlers.getStation] for Java. */
+    public fun getStation(context: Context, request: GetStationRequest): CompletionStage<GetStationResponse>
+
+    /** [StationHandlers.uploadMapStations]，供 Java 使用。[StationHandlers.uploadMapStations] for Java. */
+    public fun uploadMapStations(context: Context, request: UploadMapStationsRequest): CompletionStage<UploadMapStationsResponse>
+
+    /** [StationHandlers.addStation]，供 Java 使用。[StationHandlers.addStation] for Java. */
+    public fun addStation(context: Context, request: AddStationRequest): CompletionStage<AddStationResponse>
+
+    /** [StationHandlers.deleteStation]，供 Java 使用。[StationHandlers.deleteStation] for Java. */
+    public fun deleteStation(context: Context, request: DeleteStationRequest): CompletionStage<DeleteStationResponse>
+
+    /** [StationHandlers.renameStation]，供 Java 使用。[StationHandlers.renameStation] for Java. */
+    public fun renameStation(context: Context, request: RenameStationRequest): CompletionStage<RenameStationResponse>
+}
+
+/**
+ * 站点：`PartialAsyncRobot` 中的一部分。
+ * Stations: its part of `PartialAsyncRobot`.
+ */
+public interface StationAsyncPartial : StationAsyncHandlers {
+    override fun getStation(context: Context, request: GetStationRequest): CompletionStage<GetStationResponse> =
+        throw context.notImplemented()
+
+    override fun uploadMapStations(context: Context, request: UploadMapStationsRequest): CompletionStage<UploadMapStationsResponse> =
+        throw context.notImplemented()
+
+    override fun addStation(context: Context, request: AddStationRequest): CompletionStage<AddStationResponse> =
+        throw context.notImplemented()
+
+    override fun deleteStation(context: Context, request: DeleteStationRequest): CompletionStage<DeleteStationResponse> =
+        throw context.notImplemented()
+
+    override fun renameStation(context: Context, request: RenameStationRequest): CompletionStage<RenameStationResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onStation(robot: StationAsyncHandlers): Service = apply {
+    onAsync(Operations.getStation, robot::getStation)
+    onAsync(Operations.uploadMapStations, robot::uploadMapStations)
+    onAsync(Operations.addStation, robot::addStation)
+    onAsync(Operations.deleteStation, robot::deleteStation)
+    onAsync(Operations.renameStation, robot::renameStation)
 }
 
 /**

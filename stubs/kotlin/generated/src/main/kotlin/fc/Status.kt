@@ -28,6 +28,7 @@ import fc.runtime.TextEnumType
 import fc.runtime.TextValue
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 状态与故障：`Operations` 中的一部分。
@@ -293,6 +294,36 @@ internal class StatusExample(pretendMotion: Boolean) :
 
     override suspend fun getSelfCheck(context: Context, request: GetSelfCheckRequest): GetSelfCheckResponse =
         GetSelfCheckResponse.example()
+}
+
+/**
+ * 状态与故障：`AsyncRobot` 中的一部分。
+ * Status and faults: its part of `AsyncRobot`.
+ */
+public interface StatusAsyncHandlers {
+    /** [StatusHandlers.listFaults]，供 Java 使用。[StatusHandlers.listFaults] for Java. */
+    public fun listFaults(context: Context, request: ListFaultsRequest): CompletionStage<ListFaultsResponse>
+
+    /** [StatusHandlers.getSelfCheck]，供 Java 使用。[StatusHandlers.getSelfCheck] for Java. */
+    public fun getSelfCheck(context: Context, request: GetSelfCheckRequest): CompletionStage<GetSelfCheckResponse>
+}
+
+/**
+ * 状态与故障：`PartialAsyncRobot` 中的一部分。
+ * Status and faults: its part of `PartialAsyncRobot`.
+ */
+public interface StatusAsyncPartial : StatusAsyncHandlers {
+    override fun listFaults(context: Context, request: ListFaultsRequest): CompletionStage<ListFaultsResponse> =
+        throw context.notImplemented()
+
+    override fun getSelfCheck(context: Context, request: GetSelfCheckRequest): CompletionStage<GetSelfCheckResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onStatus(robot: StatusAsyncHandlers): Service = apply {
+    onAsync(Operations.listFaults, robot::listFaults)
+    onAsync(Operations.getSelfCheck, robot::getSelfCheck)
 }
 
 /**

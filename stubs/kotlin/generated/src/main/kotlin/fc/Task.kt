@@ -23,6 +23,7 @@ import fc.runtime.Server
 import fc.runtime.Service
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 任务：`Operations` 中的一部分。
@@ -343,6 +344,36 @@ internal class TaskExample(pretendMotion: Boolean) :
 
     override suspend fun getTaskStatus(context: Context, request: GetTaskStatusRequest): GetTaskStatusResponse =
         GetTaskStatusResponse.example()
+}
+
+/**
+ * 任务：`AsyncRobot` 中的一部分。
+ * Tasks: its part of `AsyncRobot`.
+ */
+public interface TaskAsyncHandlers {
+    /** [TaskHandlers.createTask]，供 Java 使用。[TaskHandlers.createTask] for Java. */
+    public fun createTask(context: Context, request: CreateTaskRequest): CompletionStage<CreateTaskResponse>
+
+    /** [TaskHandlers.getTaskStatus]，供 Java 使用。[TaskHandlers.getTaskStatus] for Java. */
+    public fun getTaskStatus(context: Context, request: GetTaskStatusRequest): CompletionStage<GetTaskStatusResponse>
+}
+
+/**
+ * 任务：`PartialAsyncRobot` 中的一部分。
+ * Tasks: its part of `PartialAsyncRobot`.
+ */
+public interface TaskAsyncPartial : TaskAsyncHandlers {
+    override fun createTask(context: Context, request: CreateTaskRequest): CompletionStage<CreateTaskResponse> =
+        throw context.notImplemented()
+
+    override fun getTaskStatus(context: Context, request: GetTaskStatusRequest): CompletionStage<GetTaskStatusResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onTask(robot: TaskAsyncHandlers): Service = apply {
+    onAsync(Operations.createTask, robot::createTask)
+    onAsync(Operations.getTaskStatus, robot::getTaskStatus)
 }
 
 /**

@@ -14,6 +14,7 @@ import fc.runtime.MessageBuilder
 import fc.runtime.MessageType
 import fc.runtime.Service
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 用途不详的指令：`Operations` 中的一部分。
@@ -250,6 +251,36 @@ internal class UnnamedExample(pretendMotion: Boolean) :
 
     override suspend fun unnamed0460(context: Context, request: Unnamed0460Request): Unnamed0460Response =
         pretended(context, Unnamed0460Response)
+}
+
+/**
+ * 用途不详的指令：`AsyncRobot` 中的一部分。
+ * Commands of unknown purpose: its part of `AsyncRobot`.
+ */
+public interface UnnamedAsyncHandlers {
+    /** [UnnamedHandlers.unnamed0309]，供 Java 使用。[UnnamedHandlers.unnamed0309] for Java. */
+    public fun unnamed0309(context: Context, request: Unnamed0309Request): CompletionStage<Unnamed0309Response>
+
+    /** [UnnamedHandlers.unnamed0460]，供 Java 使用。[UnnamedHandlers.unnamed0460] for Java. */
+    public fun unnamed0460(context: Context, request: Unnamed0460Request): CompletionStage<Unnamed0460Response>
+}
+
+/**
+ * 用途不详的指令：`PartialAsyncRobot` 中的一部分。
+ * Commands of unknown purpose: its part of `PartialAsyncRobot`.
+ */
+public interface UnnamedAsyncPartial : UnnamedAsyncHandlers {
+    override fun unnamed0309(context: Context, request: Unnamed0309Request): CompletionStage<Unnamed0309Response> =
+        throw context.notImplemented()
+
+    override fun unnamed0460(context: Context, request: Unnamed0460Request): CompletionStage<Unnamed0460Response> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onUnnamed(robot: UnnamedAsyncHandlers): Service = apply {
+    onAsync(Operations.unnamed0309, robot::unnamed0309)
+    onAsync(Operations.unnamed0460, robot::unnamed0460)
 }
 
 /**

@@ -18,6 +18,7 @@ import fc.runtime.MessageType
 import fc.runtime.Service
 import fc.runtime.Types
 import java.util.concurrent.CompletableFuture
+import java.util.concurrent.CompletionStage
 
 /**
  * 上装：`Operations` 中的一部分。
@@ -161,6 +162,29 @@ internal class UpperBodyExample(pretendMotion: Boolean) :
     UpperBodyHandlers {
     override suspend fun getUpperBodyStatus(context: Context, request: GetUpperBodyStatusRequest): GetUpperBodyStatusResponse =
         GetUpperBodyStatusResponse.example()
+}
+
+/**
+ * 上装：`AsyncRobot` 中的一部分。
+ * Upper body: its part of `AsyncRobot`.
+ */
+public interface UpperBodyAsyncHandlers {
+    /** [UpperBodyHandlers.getUpperBodyStatus]，供 Java 使用。[UpperBodyHandlers.getUpperBodyStatus] for Java. */
+    public fun getUpperBodyStatus(context: Context, request: GetUpperBodyStatusRequest): CompletionStage<GetUpperBodyStatusResponse>
+}
+
+/**
+ * 上装：`PartialAsyncRobot` 中的一部分。
+ * Upper body: its part of `PartialAsyncRobot`.
+ */
+public interface UpperBodyAsyncPartial : UpperBodyAsyncHandlers {
+    override fun getUpperBodyStatus(context: Context, request: GetUpperBodyStatusRequest): CompletionStage<GetUpperBodyStatusResponse> =
+        throw context.notImplemented()
+}
+
+@JvmSynthetic
+internal fun Service.onUpperBody(robot: UpperBodyAsyncHandlers): Service = apply {
+    onAsync(Operations.getUpperBodyStatus, robot::getUpperBodyStatus)
 }
 
 /**

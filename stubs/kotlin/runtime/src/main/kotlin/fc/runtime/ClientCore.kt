@@ -453,7 +453,8 @@ internal class FrameWatch(private val limit: Long) {
 
 /** Detects late periodic reports. */
 internal class Beats(protocol: Protocol) {
-    private val intervals = protocol.reports.filter { it.everyMillis > 0 }.associate { it.code to it.everyMillis }
+    private val intervals =
+        protocol.reports.mapNotNull { report -> (report.cadence as? Cadence.Every)?.let { report.code to it.milliseconds } }.toMap()
     private val last = HashMap<Int, Long>()
 
     /** Starts a connection and forgets the reports of the previous one. */

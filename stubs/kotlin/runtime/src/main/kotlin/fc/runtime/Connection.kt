@@ -5,12 +5,7 @@ import java.util.concurrent.TimeUnit
 import java.util.function.Consumer
 import kotlin.coroutines.resume
 import kotlin.coroutines.resumeWithException
-import kotlinx.coroutines.CoroutineScope
-import kotlinx.coroutines.Dispatchers
-import kotlinx.coroutines.SupervisorJob
 import kotlinx.coroutines.flow.Flow
-import kotlinx.coroutines.future.future
-import kotlinx.coroutines.launch
 import kotlinx.coroutines.suspendCancellableCoroutine
 
 /** The options of one call. Each method returns a changed copy. */
@@ -80,7 +75,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
         command: Command<Q, A>,
         request: Q,
         options: CallOptions = CallOptions(),
-    ): CompletableFuture<A> = SCOPE.future { call(command, request, options) }
+    ): CompletableFuture<A> = Futures.of { call(command, request, options) }
 
     /**
      * Calls a code with a JSON object without envelope keys. The envelope is added. The call is repeated after a loss
@@ -107,7 +102,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     /** [callRaw] for Java. */
     @JvmOverloads
     public fun callRawAsync(code: Int, json: String, options: CallOptions = CallOptions()): CompletableFuture<RawResponse> =
-        SCOPE.future { callRaw(code, json, options) }
+        Futures.of { callRaw(code, json, options) }
 
     /**
      * Calls a command, waits for its response, and then follows its process. The events are the reports of one kind for
@@ -134,6 +129,10 @@ public class Connection internal constructor(internal val core: ClientCore, priv
         return Following(core, receiver, report, answer) { belongs(request, answer, it) }
     }
 
+    /** Makes a future of a suspending call of this connection. The generated methods for Java use it. */
+    @JvmSynthetic
+    public fun <T> future(call: suspend () -> T): CompletableFuture<T> = Futures.of(call)
+
     /**
      * Returns the reports from now on. Each receiver has its own queue and gets all reports. Close it after use.
      * Reports are acknowledged only if a receiver has them. Without one, the robot repeats each until it gives up.
@@ -146,14 +145,8 @@ public class Connection internal constructor(internal val core: ClientCore, priv
      */
     public fun onReport(listener: Consumer<ReceivedReport>): AutoCloseable {
         val reports = reports()
-        SCOPE.launch { while (true) told("the listener of reports", listener, reports.receive() ?: break) }
+        Futures.launch { while (true) core.told("the listener of reports", listener, reports.receive() ?: break) }
         return reports
-    }
-
-    private fun <T> told(what: String, listener: Consumer<T>, news: T) = try {
-        listener.accept(news)
-    } catch (failure: Throwable) {
-        core.listenerFailed(what, failure, listener)
     }
 
     /**
@@ -175,17 +168,14 @@ public class Connection internal constructor(internal val core: ClientCore, priv
      * Calls [listener] with the current state and each later one, until the result is closed. For Java. An exception of
      * the listener is logged, and the next state still reaches it.
      */
-    public fun onState(listener: Consumer<ConnectionState>): AutoCloseable {
-        val watch = SCOPE.launch { states().collect { told("the listener of states", listener, it) } }
-        return AutoCloseable { watch.cancel() }
-    }
+    public fun onState(listener: Consumer<ConnectionState>): AutoCloseable = core.watch(core.life, listener)
 
     /** Waits until the connection has ended for good, and returns the reason. */
     @JvmSynthetic
     public suspend fun closed(): Loss = core.life.closed()
 
     /** [closed] for Java. */
-    public fun closedAsync(): CompletableFuture<Loss> = SCOPE.future { closed() }
+    public fun closedAsync(): CompletableFuture<Loss> = Futures.of { closed() }
 
     /** Number of calls in flight. */
     public val inFlight: Int get() = core.inFlight
@@ -232,9 +222,6 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     }
 
     public companion object {
-        /** Runs the calls from Java. */
-        private val SCOPE = CoroutineScope(SupervisorJob() + Dispatchers.Default)
-
         /**
          * Connects over TCP.
          *
@@ -257,7 +244,7 @@ public class Connection internal constructor(internal val core: ClientCore, priv
         @JvmStatic
         @JvmOverloads
         public fun connectAsync(protocol: Protocol, config: ClientConfig = ClientConfig()): CompletableFuture<Connection> =
-            SCOPE.future { connect(protocol, config) }
+            Futures.of { connect(protocol, config) }
 
         /**
          * Returns at once and connects over TCP in the background. A failed first attempt is repeated like one after a

@@ -1,14 +1,11 @@
 package fc.runtime
 
 import java.util.concurrent.CompletableFuture
+import java.util.function.Consumer
 import kotlin.coroutines.resume
 import kotlin.coroutines.resumeWithException
-import kotlinx.coroutines.CoroutineScope
-import kotlinx.coroutines.Dispatchers
-import kotlinx.coroutines.SupervisorJob
 import kotlinx.coroutines.flow.Flow
 import kotlinx.coroutines.flow.flow
-import kotlinx.coroutines.future.future
 import kotlinx.coroutines.suspendCancellableCoroutine
 import kotlinx.coroutines.sync.Mutex
 import kotlinx.coroutines.sync.withLock
@@ -102,10 +99,7 @@ public class DataConnection internal constructor(private val core: DataCore) : A
     }
 
     /** [connected] for Java. */
-    public fun connectedAsync(): CompletableFuture<Void?> = SCOPE.future {
-        connected()
-        null
-    }
+    public fun connectedAsync(): CompletableFuture<Void?> = Futures.done { connected() }
 
     /**
      * Returns the next frame. While the app does not take received frames, the client stops reading from the robot.
@@ -116,7 +110,7 @@ public class DataConnection internal constructor(private val core: DataCore) : A
     public suspend fun receive(): StreamFrame = core.box.receive()
 
     /** [receive] for Java. */
-    public fun receiveAsync(): CompletableFuture<StreamFrame> = SCOPE.future { receive() }
+    public fun receiveAsync(): CompletableFuture<StreamFrame> = Futures.of { receive() }
 
     /**
      * Returns the frames of one stream from now on. [receive] then skips them. The queue holds four frames, and drops
@@ -170,9 +164,13 @@ public class DataConnection internal constructor(private val core: DataCore) : A
     }
 
     /** [send] for Java. */
-    public fun sendAsync(code: Int, id: Long, data: ByteArray): CompletableFuture<Void?> = SCOPE.future {
+    public fun sendAsync(code: Int, id: Long, data: ByteArray): CompletableFuture<Void?> = Futures.done {
         send(code, id, data)
-        null
+    }
+
+    /** [send] for Java. */
+    public fun sendAsync(code: Int, id: Long, content: Message): CompletableFuture<Void?> = Futures.done {
+        send(code, id, content)
     }
 
     /** The current state of the connection. */
@@ -181,20 +179,21 @@ public class DataConnection internal constructor(private val core: DataCore) : A
     /** The states of the connection, from the current one to the last. */
     public fun states(): Flow<ConnectionState> = core.life.states
 
+    /**
+     * Calls [listener] with the current state and each later one, until the result is closed. For Java. An exception of
+     * the listener is logged, and the next state still reaches it.
+     */
+    public fun onState(listener: Consumer<ConnectionState>): AutoCloseable = core.commands.watch(core.life, listener)
+
     /** Waits until the connection has ended for good, and returns the reason. */
     @JvmSynthetic
     public suspend fun closed(): Loss = core.life.closed()
 
     /** [closed] for Java. */
-    public fun closedAsync(): CompletableFuture<Loss> = SCOPE.future { closed() }
+    public fun closedAsync(): CompletableFuture<Loss> = Futures.of { closed() }
 
     /** Closes the connection. A frame that is being sent is finished if the robot takes it within a second. */
     override fun close(): Unit = core.execute { core.close() }
-
-    private companion object {
-        /** Runs the calls from Java. */
-        val SCOPE = CoroutineScope(SupervisorJob() + Dispatchers.Default)
-    }
 }
 
 /** The frames of one stream since the subscription, each read as a [T]. Close it after use. */
@@ -209,6 +208,9 @@ public class Subscription<T : Any> internal constructor(
      */
     @JvmSynthetic
     public suspend fun receive(): StreamItem<T> = taker.receive().let { StreamItem(it.id, read(it.data)) }
+
+    /** [receive] for Java. */
+    public fun receiveAsync(): CompletableFuture<StreamItem<T>> = Futures.of { receive() }
 
     /** The frames as a flow. It fails like [receive]. */
     public fun asFlow(): Flow<StreamItem<T>> = flow { while (true) emit(receive()) }

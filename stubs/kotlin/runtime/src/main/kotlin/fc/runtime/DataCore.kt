@@ -136,7 +136,7 @@ internal class DataOut(val frame: ByteArray, val done: (DataError?) -> Unit) {
 }
 
 /** The data connection of an app, without threads and sockets. It runs on the loop of the command connection. */
-internal class DataCore(private val commands: ClientCore, private val dial: Dial) {
+internal class DataCore(val commands: ClientCore, private val dial: Dial) {
     private val lines = Lines(commands.config.log, commands.protocol) { commands.loop.now }
     private val protocol = commands.protocol
     private val loop = commands.loop

@@ -1,5 +1,7 @@
 package fc.runtime
 
+import java.util.concurrent.CompletableFuture
+
 /** The effect of a command on the robot. */
 public enum class Effect {
     /** Only queries. */
@@ -47,16 +49,33 @@ public class Command<Q : Message, A : Message>(
     /** Sets the declared results other than success. */
     public fun declares(vararg errors: DeclaredError): Command<Q, A> = apply { declared = errors.toList() }
 
-    private var states: List<Any> = emptyList()
+    /** The conditions under which the robot accepts it; `null` if the spec specifies none. */
+    public var preconditions: Preconditions? = null
+        private set
+
+    private fun conditions(change: (Preconditions) -> Preconditions): Command<Q, A> = apply {
+        preconditions = change(preconditions ?: Preconditions(false, emptyList(), emptyList()))
+    }
 
     /** Limits the command to these states, which may belong to several enums. */
-    public fun accepted(vararg states: Any): Command<Q, A> = apply { this.states = states.toList() }
+    public fun accepted(vararg states: Any): Command<Q, A> =
+        conditions { Preconditions(it.isAnyState, states.toList(), it.after) }
+
+    /** Allows the command in any state. */
+    public fun acceptedAlways(): Command<Q, A> = conditions { Preconditions(true, it.states, it.after) }
+
+    /** Sets the names of the commands that come first. */
+    public fun after(vararg commands: String): Command<Q, A> =
+        conditions { Preconditions(it.isAnyState, it.states, commands.toList()) }
 
     /**
      * Returns `true` if the command is accepted in this state, as far as it depends on states of this enum. A state
      * that the spec does not define is not accepted then.
      */
-    public fun isAcceptedIn(state: Any): Boolean = states.none { it.javaClass == state.javaClass } || state in states
+    public fun isAcceptedIn(state: Any): Boolean {
+        val states = preconditions?.states.orEmpty()
+        return states.none { it.javaClass == state.javaClass } || state in states
+    }
 
     override fun toString(): String = name
 }
@@ -101,16 +120,19 @@ public class Report<R : Message>(
         titleEn = en
     }
 
+    /** The time at which it is sent; `null` if the spec does not specify it. */
+    public var cadence: Cadence? = null
+        private set
+
     internal var ack: AckPolicy? = null
-    internal var everyMillis: Long = 0
     internal var stateOf: ((R) -> State?)? = null
     internal var failureOf: ((R) -> Boolean)? = null
 
     /** Sets an acknowledgement policy other than the default of the protocol. */
     public fun ack(ack: AckPolicy): Report<R> = apply { this.ack = ack }
 
-    /** Sets the interval of a periodic report, in milliseconds. */
-    public fun every(milliseconds: Long): Report<R> = apply { everyMillis = milliseconds }
+    /** Sets the time at which it is sent. */
+    public fun cadence(cadence: Cadence): Report<R> = apply { this.cadence = cadence }
 
     /** Sets the function that returns the state of the process, or `null` if a report has none. */
     public fun state(state: (R) -> State?): Report<R> = apply { stateOf = state }
@@ -132,6 +154,9 @@ public class Refusal(
     /** Text for people. Never rely on it. */
     public val text: String,
 ) : Exception(null, null, false, false) {
+    /** A future that has failed with this refusal, for a handler in Java. */
+    public fun <T> toFuture(): CompletableFuture<T> = CompletableFuture<T>().also { it.completeExceptionally(this) }
+
     override val message: String get() = "refused with result $code: $text"
 
     override fun equals(other: Any?): Boolean = other is Refusal && other.code == code && other.text == text

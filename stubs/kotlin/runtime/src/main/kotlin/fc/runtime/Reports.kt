@@ -1,5 +1,6 @@
 package fc.runtime
 
+import java.util.concurrent.CompletableFuture
 import kotlinx.coroutines.flow.Flow
 import kotlinx.coroutines.flow.flow
 
@@ -111,6 +112,9 @@ public class Following<A : Message, R : Message> internal constructor(
         }
         return null
     }
+
+    /** [receive] for Java. The value is `null` after the end. */
+    public fun receiveAsync(): CompletableFuture<Followed<R>?> = Futures.of { receive() }
 
     private fun followed(arrival: Arrival): Followed<R>? = when (arrival) {
         is Arrival.Missed -> Followed.Missed(arrival.reports)

@@ -15,7 +15,6 @@ import kotlinx.coroutines.async
 import kotlinx.coroutines.awaitAll
 import kotlinx.coroutines.cancel
 import kotlinx.coroutines.coroutineScope
-import kotlinx.coroutines.future.future
 import kotlinx.coroutines.suspendCancellableCoroutine
 
 /** A robot. It listens on both ports and handles requests with a [Service]. Any thread may use it. */
@@ -73,7 +72,7 @@ public class Server internal constructor(
         audience: Audience,
         report: Report<R>,
         message: R,
-    ): CompletableFuture<List<Acknowledgement>> = SCOPE.future { push(audience, report, message) }
+    ): CompletableFuture<List<Acknowledgement>> = Futures.of { push(audience, report, message) }
 
     /**
      * Sends a frame of raw bytes to the data connections of one app, or of all. [code] is the stream, [id] the request
@@ -117,7 +116,11 @@ public class Server internal constructor(
 
     /** [sendStream] for Java. */
     public fun sendStreamAsync(audience: Audience, code: Int, id: Long, data: ByteArray): CompletableFuture<Int> =
-        SCOPE.future { sendStream(audience, code, id, data) }
+        Futures.of { sendStream(audience, code, id, data) }
+
+    /** [sendStream] for Java. */
+    public fun sendStreamAsync(audience: Audience, code: Int, id: Long, content: Message): CompletableFuture<Int> =
+        Futures.of { sendStream(audience, code, id, content) }
 
     /**
      * Returns the frames of raw bytes that apps send from now on. Without a receiver, they are dropped and counted.
@@ -152,9 +155,8 @@ public class Server internal constructor(
     }
 
     /** [shutdown] for Java. */
-    public fun shutdownAsync(grace: Long, unit: TimeUnit): CompletableFuture<Void?> = SCOPE.future {
+    public fun shutdownAsync(grace: Long, unit: TimeUnit): CompletableFuture<Void?> = Futures.done {
         shutdown(grace, unit)
-        null
     }
 
     /** Ends the robot at once. */
@@ -185,9 +187,6 @@ public class Server internal constructor(
     }
 
     public companion object {
-        /** Runs the calls from Java. */
-        private val SCOPE = CoroutineScope(SupervisorJob() + Dispatchers.Default)
-
         /**
          * Listens on both ports and serves from now on.
          *

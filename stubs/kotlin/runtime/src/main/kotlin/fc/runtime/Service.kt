@@ -116,6 +116,11 @@ public class Service {
     @JvmSynthetic
     public fun onUnknown(handler: RawHandler): Service = apply { unknown = RawEntry(handler, handler) }
 
+    /** [onUnknown] for Java. */
+    public fun onUnknownAsync(handler: BiFunction<Context, RawRequest, CompletionStage<Json>>): Service = apply {
+        unknown = RawEntry({ context, request -> handler.apply(context, request).await() }, handler)
+    }
+
     /** Sets the handler of a command. */
     @JvmSynthetic
     public fun <Q : Message, A : Message> on(command: Command<Q, A>, handler: Handler<Q, A>): Service = apply {

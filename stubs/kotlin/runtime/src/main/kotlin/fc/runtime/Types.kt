@@ -70,6 +70,10 @@ public object Types {
     @JvmStatic
     public fun <T : Any> list(item: Codec<T>): Codec<List<T>> = ListCodec(item)
 
+    /** An id, made by [make] from a value. */
+    @JvmStatic
+    public fun <V : Any, I : Id<V>> id(value: Codec<V>, make: (V) -> I): Codec<I> = IdCodec(value, make)
+
     private val MOST get() = BigInteger.ONE.shiftLeft(Long.SIZE_BITS).subtract(BigInteger.ONE)
 
     private fun <T : Number> integer(min: Long, max: Long, make: (Number) -> T): Codec<T> =

@@ -40,7 +40,7 @@ internal object Toy : Protocol() {
     val ECHO = Command("echo", 100, Effect.READ, Echo, EchoReply)
     val GO = Command("go", 200, Effect.MOTION, Go, Done)
     val MOVED = Report("moved", 300, Moved, Empty).state { Stage(it.metres) }
-    val TICK = Report("tick", 301, Tick, Empty).every(1000)
+    val TICK = Report("tick", 301, Tick, Empty).cadence(Cadence.Every(1000))
 
     /** The progress of the journey: 0 starts it, 3 ends it, 9 is a failure. Each number follows the previous one. */
     class Stage(private val metres: Int) : State {
