@@ -129,7 +129,7 @@ pub fn help() -> Help {
         summary: both("向机器人发送一条指令", "Send a command to a robot"),
         details: vec![
             Part::Text(both(
-                "请求按规范检查后才发送。值写成 `键=值`：键是线上键名或代码中的名称，用点号进入对象，用序号进入列表；枚举值写名称，\
+                "请求按规范检查后才发送。值写成 `键=值`：键是报文中的键名或代码中的名称，用点号进入对象，用序号进入列表；枚举值写名称，\
                  列表用逗号分隔。没有给出的键不发送。",
                 "The request is checked by the spec before it is sent. A value is `key=value`. The key is a wire key or a name in code; \
                  dots lead into objects, and indexes into lists. Enum values have names, and lists have commas. Keys that you leave out \
@@ -160,7 +160,7 @@ pub fn help() -> Help {
             ),
             Part::Examples(vec![
                 (
-                    "fcproto call get_robot_sn --to 192.168.1.3",
+                    "fcproto call get_robot_sn --to robot.local",
                     both("查询一台机器人", "Ask a robot"),
                 ),
                 ("fcproto call --list", both("可用的指令", "The commands")),

@@ -35,7 +35,7 @@ enum Part {
 /// An area, the part of its files that counts, and its places from the root of the project.
 type Area = (&'static str, Part, &'static [&'static str]);
 
-const AREAS: [Area; 29] = [
+const AREAS: [Area; 30] = [
     (
         "documents",
         Part::Prose,
@@ -56,6 +56,7 @@ const AREAS: [Area; 29] = [
             "fc-reflect/README.md",
             "fc-runtime/README.md",
             "fc-spec/README.md",
+            "fc-workshop/README.md",
             "load",
             "operations",
             "stubs",
@@ -91,6 +92,7 @@ const AREAS: [Area; 29] = [
             "fc-runtime",
             "fc-spec",
             "fc-test",
+            "fc-workshop",
             "stubs",
         ],
     ),
@@ -123,6 +125,7 @@ const AREAS: [Area; 29] = [
     ("comments of fc-runtime", Part::Comments, &["fc-runtime"]),
     ("comments of fc-spec", Part::Comments, &["fc-spec"]),
     ("comments of fc-test", Part::Comments, &["fc-test"]),
+    ("comments of fc-workshop", Part::Comments, &["fc-workshop"]),
     ("comments of fuzz", Part::Comments, &["fuzz"]),
     ("comments of load", Part::Comments, &["load"]),
     ("comments of stubs/cpp", Part::Comments, &["stubs/cpp"]),

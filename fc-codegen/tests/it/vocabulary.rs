@@ -10,12 +10,13 @@ use std::fs;
 use std::path::Path;
 
 /// Where words are looked for.
-const SOURCES: [&str; 6] = [
+const SOURCES: [&str; 7] = [
     "fc-cli/src",
     "fc-codegen/src",
     "fc-diff/src",
     "fc-lsp/src",
     "fc-reflect/src",
+    "fc-workshop/src",
     "fc-spec/src",
 ];
 

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Where sources written by hand lie: a file or a directory with all below it, and the endings that count.
-const SOURCES: [(&str, &[&str]); 26] = [
+const SOURCES: [(&str, &[&str]); 27] = [
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "j2"]),
     ("fc-derive/src", &["rs"]),
@@ -27,6 +27,7 @@ const SOURCES: [(&str, &[&str]); 26] = [
     ("fc-lsp/src", &["rs"]),
     ("editors/vscode/extension.js", &["js"]),
     ("fc-reflect/src", &["rs"]),
+    ("fc-workshop/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
     ("fc-spec/src", &["rs"]),
     ("fc-generated/examples", &["rs"]),

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is read: a file or a directory with all below it, and the endings that count.
-const TEXTS: [(&str, &[&str]); 60] = [
+const TEXTS: [(&str, &[&str]); 62] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -37,6 +37,7 @@ const TEXTS: [(&str, &[&str]); 60] = [
     ("fc-generated/README.md", &["md"]),
     ("fc-lsp/README.md", &["md"]),
     ("fc-reflect/README.md", &["md"]),
+    ("fc-workshop/README.md", &["md"]),
     ("fc-runtime/README.md", &["md"]),
     ("fc-spec/README.md", &["md"]),
     ("fc-cli/src", &["rs"]),
@@ -48,6 +49,7 @@ const TEXTS: [(&str, &[&str]); 60] = [
     ("fc-diff/src", &["rs"]),
     ("fc-lsp/src", &["rs"]),
     ("fc-reflect/src", &["rs"]),
+    ("fc-workshop/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),
     ("stubs/cpp/README.md", &["md"]),
     ("stubs/cpp/README.zh-CN.md", &["md"]),
