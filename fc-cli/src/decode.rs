@@ -112,6 +112,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         options,
         filter,
         out: BufWriter::new(io::stdout().lock()),
+        has_shown: false,
         status: Status::Fine,
     };
     options
@@ -190,6 +191,7 @@ struct Printer<'o, 'm> {
     options: &'o Options,
     filter: Filter<'o>,
     out: BufWriter<StdoutLock<'static>>,
+    has_shown: bool,
     status: Status,
 }
 
@@ -206,7 +208,12 @@ impl Printer<'_, '_> {
         } else {
             decode::text(record, self.model, lang())
         };
+        text.truncate(text.trim_end().len());
         text.push('\n');
+        // A blank line separates the trees.
+        if self.options.format == Shown::Text && std::mem::replace(&mut self.has_shown, true) {
+            self.out.write_all(b"\n")?;
+        }
         self.out.write_all(text.as_bytes())?;
         // A person may wait for each frame.
         let is_live = self.options.recording.is_live();

@@ -43,7 +43,7 @@ pub fn help() -> Help {
                 "找出设备与规范不一致之处：未知的功能码、键、枚举值和结果码，错误的类型和取值范围，缺少的键，缺少的响应和应答，\
                  状态的顺序，上报的时机。同一处只列一次，附次数和第一帧的位置。",
                 "Finds where devices differ from the spec: unknown codes, keys, enum values and results, wrong types and ranges, missing \
-                 keys, missing responses and acknowledgements, the order of states, the times of reports. Each place is listed once, with \
+                 keys. With times, also missing responses and acknowledgements, wrong states, and reports at wrong times. Each place is listed once, with \
                  its count and its first frame.",
             )),
             Part::Text(both(

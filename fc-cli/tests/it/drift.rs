@@ -32,7 +32,7 @@ fn a_deviation_is_listed_with_its_place_in_the_spec() {
     let run = project
         .fc(&["drift", "--format", "json", "recording.hex"])
         .expect(1);
-    let line: Value = serde_json::from_str(&run.stdout).unwrap();
+    let line: Value = serde_json::from_str(&run.stdout).expect("a line of JSON");
     assert_eq!(line["deviation"], "unknown_key");
     assert_eq!(line["name"], "get_lift");
     assert_eq!(line["path"], "age");
@@ -50,7 +50,10 @@ fn the_suggested_edit_settles_the_deviation() {
     let added = added.expect("an added line");
     let (file, last) = ("spec/commands/lift.yaml", "      photo:");
     let old = project.read(file);
-    let photo = old.lines().find(|line| line.starts_with(last)).unwrap();
+    let photo = old
+        .lines()
+        .find(|line| line.starts_with(last))
+        .expect("the last field");
     project.write(file, &old.replace(photo, &format!("{photo}\n{added}")));
     let run = project.fc(&["drift", "recording.hex"]).expect(0);
     assert!(run.stdout.contains('0'), "{run:?}");

@@ -1,6 +1,7 @@
 //! Deviations as JSON, one line each.
 
 use super::Deviation;
+use fc_spec::model::Direction;
 use serde::Serialize;
 
 /// A deviation in the output. Optional keys are absent if they do not apply.
@@ -47,7 +48,7 @@ pub fn line(deviation: &Deviation<'_>) -> String {
         deviation: place.kind.name(),
         name: deviation.operation.map(|it| it.name.as_str()),
         code: place.code.map(|(_, code)| format!("0x{code:04X}")),
-        direction: place.direction.map(|it| it.name()),
+        direction: place.direction.map(Direction::name),
         path: &place.path,
         value: &place.value,
         count: deviation.count,

@@ -270,6 +270,8 @@ fn of_all_items(path: &str) -> String {
 
 /// Returns the beginning of a text.
 fn cut(mut text: String) -> String {
-    text.truncate(text.floor_char_boundary(EXAMPLE));
+    let end = (0..=EXAMPLE.min(text.len())).rev();
+    let end = end.into_iter().find(|end| text.is_char_boundary(*end));
+    text.truncate(end.unwrap_or_default());
     text
 }

@@ -51,21 +51,18 @@ pub fn deviation(deviation: &Deviation<'_>, lang: Lang) -> String {
             Lang::En => format!("spec: {}", deviation.expected),
         });
     }
-    let mut first = match (lang, deviation.count) {
+    let first = match (lang, deviation.count) {
         (Lang::Zh, count) => format!("{count} 次，首次在位置 {}", deviation.offset),
         (Lang::En, 1) => format!("once, at {}", deviation.offset),
         (Lang::En, count) => format!("{count} times, first at {}", deviation.offset),
     };
-    if let Some(flow) = deviation.flow {
-        first += &format!(" · {flow}");
-    }
-    if let Some(time) = deviation.time {
-        first += &format!(" · {}", clock(time));
-    }
-    if let Some(operation) = deviation.operation {
-        first += &format!(" · {}:{}", operation.location.file, operation.location.line);
-    }
-    format!("{}\n  {}\n  {first}", title.join(" "), content.join(" · "))
+    let mut first = vec![first];
+    first.extend(deviation.flow.map(|flow| flow.to_string()));
+    first.extend(deviation.time.map(clock));
+    let operation = deviation.operation.map(|it| &it.location);
+    first.extend(operation.map(|at| format!("{}:{}", at.file, at.line)));
+    let (title, content, first) = (title.join(" "), content.join(" · "), first.join(" · "));
+    format!("{title}\n  {content}\n  {first}")
 }
 
 /// Returns the meaning of a kind in a few words.

@@ -74,7 +74,7 @@ fn cases() -> Vec<Case> {
     serde_json::from_str(&text).unwrap()
 }
 
-/// Returns the bytes of a frame. Nothing in it is checked.
+/// Returns the bytes of a frame, without any check.
 fn bytes(reflector: &Reflector<'_>, sent: &Sent) -> Vec<u8> {
     let operation = reflector.model().operation(&sent.name).unwrap();
     let direction = match sent.is {
@@ -153,15 +153,15 @@ fn each_deviation_is_found_once() {
     let model = model(&sources);
     let written = Reflector::new(&model);
     assert!(cases.len() >= 40, "{}", cases.len());
-    let mut wrong = String::new();
+    let mut wrong = Vec::new();
     for case in &cases {
         let report = observe(&written, &model, case);
         let found: Vec<_> = report.deviations.iter().map(line).collect();
         if found != case.finds {
-            wrong += &format!("{}: {found:?}, not {:?}\n", case.name, case.finds);
+            wrong.push(format!("{}: {found:?}, not {:?}", case.name, case.finds));
         }
     }
-    assert!(wrong.is_empty(), "{wrong}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn applied_suggestions_make_the_report_empty() {
     let sources = spec();
     let original = model(&sources);
     let written = Reflector::new(&original);
-    let mut wrong = String::new();
+    let mut wrong = Vec::new();
     for case in cases() {
         let mut amended = sources.clone();
         let mut rounds = 0;
@@ -188,8 +188,8 @@ fn applied_suggestions_make_the_report_empty() {
             }
         };
         if settled != case.settles {
-            wrong += &format!("{}: settled {settled}\n", case.name);
+            wrong.push(format!("{}: settled {settled}", case.name));
         }
     }
-    assert!(wrong.is_empty(), "{wrong}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }

@@ -45,7 +45,7 @@ fn the_next_frame_is_found_after_damage() {
 }
 
 #[test]
-fn an_incomplete_frame_at_the_end_does_not_hide_others() {
+fn frames_inside_an_incomplete_frame_are_found() {
     let model = small();
     let frame = sampled(&model, "dimmed", 7);
     let mut long = frame.clone();

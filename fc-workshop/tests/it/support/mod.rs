@@ -52,7 +52,7 @@ pub fn unhex(text: &str) -> Vec<u8> {
     (0..text.len()).step_by(2).map(digit).collect()
 }
 
-/// Random numbers (SplitMix64), the same in each run.
+/// Random numbers (`SplitMix64`), the same in each run.
 pub struct Numbers(pub u64);
 
 impl Numbers {
