@@ -15,9 +15,11 @@ async function laboratory(open, url = '/lab/index.html') {
   return page
 }
 
-/** Pastes each frame and reads the verdict. */
-const judge = (page, frames) =>
-  page.evaluate(async (frames) => {
+/** Pastes each frame and reads the verdict. The first verdict may be late, because the page loads its decoder then. */
+const judge = async (page, frames) => {
+  await page.locator('[data-field=hex]').fill(frames[0])
+  await page.locator('[data-out=fault]').waitFor({ state: 'attached' })
+  return page.evaluate(async (frames) => {
     const box = document.querySelector('[data-field=hex]')
     const setter = Object.getOwnPropertyDescriptor(HTMLTextAreaElement.prototype, 'value').set
     const verdicts = []
@@ -34,6 +36,7 @@ const judge = (page, frames) =>
     }
     return verdicts
   }, frames)
+}
 
 const lab = await engine()
 const { codec, protocol } = lab
