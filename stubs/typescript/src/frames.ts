@@ -13,6 +13,9 @@ export interface FatalFault {
   readonly fatal: ErrorName
 }
 
+/** A search ends the stream after this many times the longest frame. */
+const SEARCH = 4
+
 /**
  * Gathers received bytes and returns whole frames. Memory use follows the received bytes, not the length in a header.
  */
@@ -23,6 +26,10 @@ export class FrameStream {
   private fatal: ErrorName | null = null
   /** Length of the frame that has begun; `null` until its header is complete. */
   private total: number | null = null
+  /** `true` after bytes have been skipped, until the next frame. */
+  private isSearching = false
+  /** Bytes of unsuccessful candidates in this search. */
+  private tried = 0
 
   /** Creates an empty stream. */
   constructor(framing: Framing) {
@@ -53,26 +60,65 @@ export class FrameStream {
     this.held += bytes.length
   }
 
-  /** Returns the next frame; `null` until more bytes arrive. */
-  next(): Soon<FromStream> | null {
-    if (this.fatal !== null) return { fatal: this.fatal }
-    if (this.held === 0) return null
-    if (this.total === null) {
-      const beginning = this.framing.begins(this.start(this.framing.headEnd))
-      if (typeof beginning === 'string') return this.lose(beginning)
-      if (beginning === null) return null
-      this.total = beginning
+  /**
+   * Returns the next frame; `null` until more bytes arrive. Await a promise before the next call. During a search, only
+   * a frame without any error is returned.
+   */
+  next(): Soon<FromStream | null> {
+    for (;;) {
+      if (this.fatal !== null) return { fatal: this.fatal }
+      if (this.held === 0) return null
+      if (this.total === null) {
+        const beginning = this.framing.begins(this.gather(this.framing.headEnd))
+        if (typeof beginning === 'string') {
+          if (!this.framing.resync) return this.lose(beginning)
+          this.search()
+          continue
+        }
+        if (beginning === null) return null
+        this.total = beginning
+      }
+      if (this.held < this.total) return null
+      const { total } = this
+      this.total = null
+      const frame = this.framing.open(this.gather(total).subarray(0, total))
+      if (!this.isSearching) {
+        this.drop(total)
+        return frame
+      }
+      if (frame instanceof Promise) return frame.then((opened) => this.judge(opened, total) ?? this.next())
+      const judged = this.judge(frame, total)
+      if (judged) return judged
     }
-    if (this.held < this.total) return null
-    const bytes = this.take(this.total)
-    this.total = null
-    return this.framing.open(bytes)
+  }
+
+  /** Judges a frame that was found by a search. Returns `null` if the search continues. */
+  private judge(frame: WholeFrame, total: number): FromStream | null {
+    if (frame.fault === null) {
+      this.isSearching = false
+      this.tried = 0
+      this.drop(total)
+      return frame
+    }
+    this.tried += total
+    if (this.tried > SEARCH * this.framing.frameBytes) return this.lose('bad_head')
+    this.search()
+    return null
+  }
+
+  /** Skips to the next position that may be a head. */
+  private search(): void {
+    this.isSearching = true
+    const bytes = this.gather(this.held)
+    let at = 1
+    while (at < bytes.length && !this.framing.mayBegin(bytes, at)) at++
+    this.drop(at)
   }
 
   /** Ends the stream. Returns an error if it ended inside a frame. */
   end(): FatalFault | null {
     if (this.fatal !== null) return { fatal: this.fatal }
-    return this.held === 0 ? null : this.lose('truncated')
+    return this.held === 0 || this.isSearching ? null : this.lose('truncated')
   }
 
   private lose(fatal: ErrorName): FatalFault {
@@ -82,25 +128,21 @@ export class FrameStream {
     return { fatal }
   }
 
-  /** Returns the first bytes, at least `length` if available, without taking them. */
-  private start(length: number): Uint8Array {
+  /** Joins chunks until the first one has `length` bytes, if available, and returns it. */
+  private gather(length: number): Uint8Array {
     const first = this.chunks[0]
-    if (first && first.length >= length) return first
-    return joined(this.chunks, Math.min(length, this.held))
+    if (first && (first.length >= length || this.chunks.length === 1)) return first
+    const all = joined(this.chunks, this.held)
+    this.chunks = [all]
+    return all
   }
 
-  /** Takes the first `length` bytes. The caller checks that there are enough. */
-  private take(length: number): Uint8Array {
-    const { chunks } = this
-    const first = chunks[0]
-    const all = first && chunks.length === 1 ? first : joined(chunks, this.held)
+  /** Drops bytes of the first chunk. */
+  private drop(length: number): void {
+    const first = this.chunks[0]
     this.held -= length
-    if (this.held === 0) {
-      this.chunks = []
-      return all
-    }
-    this.chunks = [all.subarray(length)]
-    return all.subarray(0, length)
+    if (!first || first.length === length) this.chunks.shift()
+    else this.chunks[0] = first.subarray(length)
   }
 }
 

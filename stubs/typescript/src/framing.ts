@@ -57,6 +57,8 @@ export class Framing {
   readonly plain: number
   /** The encoding of compressed data; `null` if the protocol has none. */
   readonly gzip: number | null
+  /** `true` if a stream of these frames searches for the next frame after invalid bytes. */
+  readonly resync: boolean
   private readonly layout: FrameLayout
   private readonly limits: FrameLimits
   private readonly algorithms: PlatformAlgorithms
@@ -69,11 +71,18 @@ export class Framing {
   private readonly roles: ReadonlyMap<number, string>
 
   /** Creates a framing with limits. */
-  constructor(layout: FrameLayout, limits: FrameLimits, algorithms: PlatformAlgorithms, verifyDigest: boolean = true) {
+  constructor(
+    layout: FrameLayout,
+    limits: FrameLimits,
+    algorithms: PlatformAlgorithms,
+    verifyDigest: boolean = true,
+    resync: boolean = false,
+  ) {
     this.layout = layout
     this.limits = limits
     this.algorithms = algorithms
     this.verifies = verifyDigest
+    this.resync = resync
     for (const field of layout.header) if (field.role !== null) this.fields[field.role] = field
     this.fixed = layout.header.filter(
       ({ role, value, type }) => (role === null || role === 'status') && value !== 0 && type === 'uint',
@@ -173,17 +182,21 @@ export class Framing {
     return value
   }
 
-  private opens(bytes: Uint8Array, head: readonly number[]): boolean {
-    const offset = this.fields.head?.offset ?? 0
+  private opens(bytes: Uint8Array, head: readonly number[], from = 0): boolean {
+    const offset = from + (this.fields.head?.offset ?? 0)
     const length = Math.min(head.length, bytes.length - offset)
     for (let at = 0; at < length; at++) if (bytes[offset + at] !== head[at]) return false
     return true
   }
 
+  /** Returns `true` if the bytes from a position on begin with a head, or are the beginning of one. */
+  mayBegin(bytes: Uint8Array, at: number = 0): boolean {
+    return this.opens(bytes, this.layout.requestHead, at) || this.opens(bytes, this.layout.responseHead, at)
+  }
+
   /** Reads the length from the first bytes of a frame; `null` until the length is complete. */
   begins(bytes: Uint8Array): Beginning | null {
-    const { requestHead, responseHead } = this.layout
-    if (!this.opens(bytes, requestHead) && !this.opens(bytes, responseHead)) return 'bad_head'
+    if (!this.mayBegin(bytes)) return 'bad_head'
     if (bytes.length < this.headEnd) return null
     const total = this.read(bytes, this.fields.total_length)
     if (total < this.headerLength) return 'short_frame'

@@ -84,6 +84,17 @@ test('a broken answer ends its call, and the connection goes on', async () => {
   assert.equal(connection.counters().badFrames, 1)
 })
 
+test('with resync, a connection goes on after garbage', async () => {
+  const { raw, connection } = await client({ resync: true })
+  const call = connection.call(echo, { text: 'a' })
+  await settle()
+  const [{ id }] = raw.take()
+  await raw.sendBytes(new TextEncoder().encode('garbage'))
+  await raw.answer({ id }, { result: 0, text: 'b' })
+  assert.equal((await call).text, 'b')
+  assert.equal(connection.state.is, 'connected')
+})
+
 test('a call can be given up, before and after it is sent, and gives its place back', async () => {
   const { raw, connection } = await client({ limits: { inFlight: 1 } })
   const abort = new AbortController()

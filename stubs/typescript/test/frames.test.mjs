@@ -62,3 +62,52 @@ test('a wrong head is found at once, and nothing is kept behind it', () => {
   assert.equal(stream.pending, 0)
   assert.deepEqual([stream.next(), stream.end()], [{ fatal: 'bad_head' }, { fatal: 'bad_head' }])
 })
+
+/** The first frame without an error, and a damaged copy of it. */
+function pair() {
+  const { accepted } = vectors.find(({ file }) => file === 'frames.json')
+  const good = bytesOf(accepted[0].frame)
+  const damaged = Uint8Array.from(good)
+  damaged[damaged.length - 1] ^= 1
+  return { good, damaged, wanted: all(codec, [good])[0] }
+}
+
+const concat = (...parts) => Uint8Array.from(parts.flatMap((part) => [...part]))
+
+/** Returns what a stream with `resync` makes of the chunks, where opening a frame may take time. */
+async function found(framing, chunks) {
+  const stream = new FrameStream(framing)
+  const out = []
+  for (const chunk of chunks) {
+    stream.push(chunk)
+    for (let next = await stream.next(); next; next = await stream.next()) {
+      out.push(next)
+      if (next.fatal) return out
+    }
+  }
+  assert.equal(stream.end(), null)
+  return out
+}
+
+test('with resync, the next frame after garbage is found, and a damaged one passed over', async () => {
+  const { good, damaged, wanted } = pair()
+  const garbage = new TextEncoder().encode('garbage')
+  const bytes = concat(garbage, damaged, good, good, garbage, good.subarray(0, 3), good)
+  const soon = framingOf(codec, true)
+  const open = soon.open.bind(soon)
+  soon.open = (frame) => Promise.resolve(open(frame))
+  for (const framing of [framingOf(codec, true), soon]) {
+    for (const size of [1, 2, 13, bytes.length]) {
+      assert.deepEqual(await found(framing, split(bytes, size)), [wanted, wanted, wanted], String(size))
+    }
+  }
+})
+
+test('with resync, a search ends after several times the longest frame', async () => {
+  const { damaged } = pair()
+  const framing = framingOf(codec, true)
+  Object.defineProperty(framing, 'frameBytes', { value: damaged.length })
+  const garbage = concat(Uint8Array.of(0), ...Array(5).fill(damaged))
+  assert.deepEqual(await found(framing, [garbage]), [{ fatal: 'bad_head' }])
+  assert.deepEqual(await found(framing, [garbage.subarray(0, 1 + 4 * damaged.length)]), [])
+})

@@ -27,9 +27,9 @@ process.on('exit', () => {
 })
 
 /** Returns a framing for a codec's protocol that accepts any compression ratio. */
-export function framingOf({ protocol, algorithms }) {
+export function framingOf({ protocol, algorithms }, resync = false) {
   const { frameBytes, inflatedBytes } = protocol.limits
-  return new Framing(protocol, { frameBytes, inflatedBytes }, algorithms)
+  return new Framing(protocol, { frameBytes, inflatedBytes }, algorithms, true, resync)
 }
 
 /** Returns the files of vectors in a folder: `{ file, operation, code, accepted, rejected }`. */

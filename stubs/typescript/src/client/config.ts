@@ -55,6 +55,8 @@ export interface ClientConfig {
   readonly gzip?: Gzip | null
   /** Verifies the digests of received frames: `true` unless set. */
   readonly verifyDigest?: boolean
+  /** Searches for the next frame after invalid bytes, instead of closing the connection: `false` unless set. */
+  readonly resync?: boolean
   /** Receives log messages. Unless set, errors are written to the console. */
   readonly log?: Log
 }
@@ -102,6 +104,7 @@ export const clientCheck: Check = group<ClientConfig>({
   firstId: integer(0),
   gzip: gzipCheck,
   verifyDigest: flag,
+  resync: flag,
   log: callback,
 })
 

@@ -108,7 +108,13 @@ export class Core {
     this.settings = settle(protocol, config)
     this.log = new Logger(config.log, wire.name, () => this.now)
     const { limits } = this.settings
-    this.framing = new Framing(wire.frame, limits, platform.algorithms, config.verifyDigest ?? true)
+    this.framing = new Framing(
+      wire.frame,
+      limits,
+      platform.algorithms,
+      config.verifyDigest ?? true,
+      config.resync ?? false,
+    )
     this.bodies = new Bodies(wire, platform.clock, limits)
     this.queues = new Queues(limits.queuedReports, config.queuedBytes ?? limits.inflatedBytes)
     this.session = new Session({

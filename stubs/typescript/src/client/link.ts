@@ -129,6 +129,7 @@ export class Link {
         for (let next = stream.next(); next !== null && !this.isOver; next = stream.next()) {
           this.begun = null
           const frame = next instanceof Promise ? await next : next
+          if (frame === null) break
           if ('fatal' in frame) {
             owner.counters.badFrames++
             this.end({ is: 'frame', fault: frame.fatal })

@@ -48,6 +48,8 @@ export interface ServerConfig {
   readonly gzip?: Gzip | null
   /** Verifies the digests of received frames: `true` unless set. */
   readonly verifyDigest?: boolean
+  /** Searches for the next frame after invalid bytes, instead of closing the connection: `false` unless set. */
+  readonly resync?: boolean
   /** Time for a frame header, from its first byte to its last: 5000 unless set. */
   readonly headerTimeout?: number
   /**
@@ -98,6 +100,7 @@ export const serverCheck: Check = group<ServerConfig>({
   firstId: integer(0),
   gzip: gzipCheck,
   verifyDigest: flag,
+  resync: flag,
   headerTimeout: duration,
   stallTimeout: duration,
   leastRate: rate,

@@ -142,6 +142,7 @@ export class Inlet {
     const { stream } = this
     for (let next = stream.next(); next !== null && !this.isDeaf; next = stream.next()) {
       const frame = next instanceof Promise ? await next : next
+      if (frame === null) break
       if ('fatal' in frame) {
         this.events.frame({
           id: { response: true, kind: -1, code: 0, id: 0 },

@@ -148,6 +148,7 @@ export class Shared {
       this.settings.limits,
       platform.algorithms,
       config.verifyDigest ?? true,
+      config.resync ?? false,
     )
     this.bodies = new Bodies(protocol.wire, platform.clock, this.settings.limits)
     this.abandoned = new Abandoned(config.abandonedHandlers ?? 64)
