@@ -212,7 +212,7 @@ const CLIENT_COUNTERS: [(&str, &str, &str); 4] = [
         r"(?m)^  Count (\w+);",
     ),
 ];
-const SERVER_COUNTERS: [(&str, &str, &str); 2] = [
+const SERVER_COUNTERS: [(&str, &str, &str); 3] = [
     (
         "stubs/typescript/src/server/counters.ts",
         "ServerCounters {",
@@ -222,6 +222,11 @@ const SERVER_COUNTERS: [(&str, &str, &str); 2] = [
         "stubs/python/src/fc_runtime/counters.py",
         "ServerCounters:",
         r"(?m)^    (\w+): int = 0$",
+    ),
+    (
+        "stubs/kotlin/runtime/src/main/kotlin/fc/runtime/Counters.kt",
+        "class ServerCounters",
+        r"public val (\w+): Long",
     ),
 ];
 

@@ -80,7 +80,7 @@ private class Robot(
     private val wire = TestWire(loop)
     val core: ServerCore
     val panicked get() = fc.runtime.ServerCounters(core.counting.read()).handlersPanicked
-    val answered get() = fc.runtime.ServerCounters(core.counting.read()).callsAnswered
+    val answered get() = fc.runtime.ServerCounters(core.counting.read()).callsSucceeded
 
     init {
         val logged = config.log { level, line -> if (level == LogLevel.ERROR) lines.add(line) }

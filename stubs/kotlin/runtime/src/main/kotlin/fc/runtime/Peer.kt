@@ -291,6 +291,7 @@ internal class Peer(
         val job = server.scope.launch(server.handlerFaults, CoroutineStart.LAZY) { run(work, task) }
         work.job = job
         working.add(work)
+        if (working.size == limits.inFlight) server.counting.add(ServerCount.IN_FLIGHT_REACHED)
         // A dispatcher that accepts no more work cancels the job before it starts.
         job.invokeOnCompletion { cause -> if (cause != null) loop.execute { finish(work) { cancelled(work) } } }
         work.deadline = loop.schedule(after(now, config.handlerTimeout ?: protocol.defaults.handlerTimeout)) { late(work) }
@@ -333,7 +334,7 @@ internal class Peer(
             return onInvalid(work, error)
         }
         return {
-            server.counting.add(ServerCount.CALLS_ANSWERED)
+            server.counting.add(ServerCount.CALLS_SUCCEEDED)
             send(body, work.id.answer())
         }
     }
@@ -369,7 +370,6 @@ internal class Peer(
 
     private fun late(work: Work) {
         working.remove(work)
-        server.counting.add(ServerCount.CALLS_TIMED_OUT)
         refuse(work.id, protocol.results.timeout)
         abandon(work)
         wake()
@@ -384,10 +384,18 @@ internal class Peer(
     private fun refuse(id: FrameId, result: ResultText) = refuse(id, Refusal(result.code, result.text))
 
     private fun refuse(id: FrameId, refusal: Refusal) {
-        server.counting.add(ServerCount.CALLS_REFUSED)
+        server.counting.add(counterOf(refusal.code))
         if (!Envelopes.hasResult(protocol)) return
         val body = refused(refusal.code, refusal.text) ?: protocol.results.protocol.run { refused(code, text) }
         if (body != null) send(body, id.answer())
+    }
+
+    private fun counterOf(result: Long): ServerCount = when (result) {
+        protocol.results.protocol.code -> ServerCount.CALLS_PROTOCOL
+        protocol.results.timeout.code -> ServerCount.CALLS_TIMED_OUT
+        protocol.results.invalid.code -> ServerCount.CALLS_INVALID
+        protocol.results.expired.code -> ServerCount.CALLS_EXPIRED
+        else -> ServerCount.CALLS_REFUSED
     }
 
     /** Encodes a refusal. Returns `null` if its text does not fit into a frame. */
@@ -459,6 +467,7 @@ internal class Peer(
             val report = queue.removeFirstOrNull() ?: break
             val frame = session.open(protocol.reportKind, report.code, spread(report.policy), now, report) ?: break
             flyingBytes += report.body.length
+            server.counting.add(ServerCount.REPORTS_SENT)
             send(report.body, frame)
         }
         if (isOver) return Long.MAX_VALUE

@@ -97,6 +97,30 @@ internal fun limitTests(tests: Tests) {
         robot.loop.settle()
         expect(3, robot.gates.size)
     }
+    tests.case("a call is counted by its result, a full connection once") {
+        val robot = LimitedRobot(ServerConfig().limits(limits.inFlight(2)).handlerTimeout(1000, MILLISECONDS).maxAge(60, SECONDS))
+        fun command(code: Int, body: String) = robot.wire.send(FrameId(false, Toy.commandKind, code, 1), body).also { robot.loop.settle() }
+        robot.go(1)
+        robot.gates[0].complete(Unit)
+        robot.go(2)
+        robot.gates[1].completeExceptionally(Refusal(7, "no"))
+        command(999, "{}")
+        command(100, "{\"text\":\"a\"}")
+        command(200, "{}")
+        command(200, "{\"time\":1,\"metres\":1}")
+        for (id in 3L..4L) robot.go(id)
+        robot.loop.advance(1000)
+        val counters = robot.counters
+        val byResult = counters.run { listOf(callsSucceeded, callsRefused, callsProtocol, callsInvalid, callsExpired, callsTimedOut) }
+        expect(listOf(1L, 1L, 2L, 1L, 1L, 2L), byResult)
+        expect(listOf(1L, 2L, 1L), counters.run { listOf(callsNotImplemented, handlersAbandoned, inFlightReached) })
+    }
+    tests.case("a report is counted when it is sent, and again") {
+        val robot = LimitedRobot(ServerConfig())
+        robot.report(1)
+        robot.loop.advance(Toy.defaults.ack.timeout + Toy.defaults.ack.timeout / 8)
+        expect(listOf(1L, 1L), robot.counters.run { listOf(reportsSent, reportsRepeated) })
+    }
     tests.case("reports queued at the robot: the oldest gives way") {
         val robot = LimitedRobot(ServerConfig().limits(limits.inFlight(1).queuedReports(2)))
         for (metres in 1..5) robot.report(metres)

@@ -207,7 +207,7 @@ internal fun netTests(tests: Tests) {
         }
         expect(true, ends.all { it == "lost" || it == "closed" }) { "$ends:" }
         // Every handled request got its response.
-        expect(answered.get(), robot.server.counters.callsAnswered)
+        expect(answered.get(), robot.server.counters.callsSucceeded)
         expect(0, app.inFlight)
         app.close()
     }
