@@ -54,7 +54,9 @@ RobotPeer::~RobotPeer() {
 /// does not begin.
 void RobotPeer::abandon(const AtWork& handler) {
   handler.abandoned->store(true);
-  if (handler.settled->exchange(true)) ++shared_->abandoned;
+  if (!handler.settled->exchange(true)) return;
+  ++shared_->abandoned;
+  ++shared_->counters.handlers_abandoned;
 }
 
 void RobotPeer::drain() {
@@ -68,7 +70,7 @@ void RobotPeer::drain() {
 
 bool RobotPeer::wants_bytes() const {
   return !deaf_ && !draining_ && !killed_ && !shared_->is_pressed && unsent() < kHighWater &&
-         handlers_.size() < shared_->settings.limits.in_flight;
+         pace_.until() <= now_ && handlers_.size() < shared_->settings.limits.in_flight;
 }
 
 bool RobotPeer::is_done() const {
@@ -87,7 +89,7 @@ void RobotPeer::received(std::string_view bytes, Instant now) {
 }
 
 void RobotPeer::pump(Instant now) {
-  while (!deaf_ && !draining_ && unsent() < kHighWater) {
+  while (!deaf_ && !draining_ && unsent() < kHighWater && pace_.until() <= now) {
     if (handlers_.size() >= shared_->settings.limits.in_flight) {
       if (decoder_.pending() > 0) ++shared_->counters.in_flight_reached;
       return;
@@ -105,6 +107,8 @@ void RobotPeer::pump(Instant now) {
       deaf_ = true;
     } else if (!next.error().frame.response) {
       answer(next.error().frame, shared_->protocol->results.protocol);
+    } else {
+      rest(pace_.unusable(now));
     }
   }
   if (decoder_.pending() == 0) begun_.reset();
@@ -112,6 +116,7 @@ void RobotPeer::pump(Instant now) {
 
 void RobotPeer::arrive(const Frame& frame, Instant now) {
   const FrameId id = frame.header.frame;
+  rest(pace_.inflated(surplus_of(frame, shared_->protocol->header.length), now));
   const Incoming incoming = session_.receive(id, frame.header.digest, now);
   if (incoming.meaning == Meaning::Answer) {
     const auto found = in_flight_.find(incoming.token);
@@ -122,7 +127,10 @@ void RobotPeer::arrive(const Frame& frame, Instant now) {
     send_reports(now);
     return;
   }
-  if (incoming.meaning == Meaning::Late) return;
+  if (incoming.meaning == Meaning::Late) {
+    rest(pace_.unusable(now));
+    return;
+  }
   const OperationInfo* known = shared_->protocol->find(OperationKind::Command, id.code);
   const bool is_handled = known != nullptr || shared_->settings.hands_on_unknown;
   if (incoming.meaning != Meaning::Command || !is_handled) {
@@ -143,7 +151,6 @@ void RobotPeer::arrive(const Frame& frame, Instant now) {
 }
 
 void RobotPeer::begin(FrameId frame, std::string_view text, Instant now) {
-  ++shared_->counters.calls;
   const std::uint64_t handler = shared_->next_handler++;
   auto abandoned = std::make_shared<std::atomic<bool>>(false);
   // The handler may be the last owner.
@@ -174,19 +181,39 @@ void RobotPeer::finish(std::uint64_t handler, const Handled& handled, Instant no
   handled_bytes_ -= found->second.text->size();
   handlers_.erase(found);
   shared_->handlers.erase(handler);
+  ServerCounters& counters = shared_->counters;
   if (handled) {
-    append(frame, *handled);
+    ++(append(frame, *handled) ? counters.calls_succeeded : counters.calls_protocol);
   } else {
+    if (handled.error().is_not_implemented) ++counters.calls_not_implemented;
     answer(frame, handled.error());
   }
   pump(now);
 }
 
 void RobotPeer::answer(FrameId id, const Refusal& refusal) {
-  ++shared_->counters.calls_refused;
+  const Results& results = shared_->protocol->results;
+  ServerCounters& counters = shared_->counters;
+  bool is_useless = true;
+  if (refusal.code == results.protocol.code) {
+    ++counters.calls_protocol;
+  } else if (refusal.code == results.invalid.code) {
+    ++counters.calls_invalid;
+  } else if (refusal.code == results.expired.code) {
+    ++counters.calls_expired;
+  } else {
+    is_useless = false;
+    ++(refusal.code == results.timeout.code ? counters.calls_timed_out : counters.calls_refused);
+  }
+  if (is_useless) rest(pace_.unusable(now_));
   if (!shared_->protocol->has_result()) return;
   const Envelope envelope{unix_ms(), refusal.code, refusal.text};
-  append(id, write_envelope(shared_->protocol->response_envelope, envelope));
+  static_cast<void>(append(id, write_envelope(shared_->protocol->response_envelope, envelope)));
+}
+
+/// Counts that the connection must rest after useless work.
+void RobotPeer::rest(bool must_rest) {
+  if (must_rest) ++shared_->counters.connections_paced;
 }
 
 /// Restarts the write timeout when the app gets something to read. Before that, it cannot be slow.
@@ -194,13 +221,15 @@ void RobotPeer::begin_to_write() {
   if (unsent() == 0) last_written_ = now_;
 }
 
-/// Appends a response with this body, or a refusal if it does not fit into a frame.
-void RobotPeer::append(FrameId id, std::string_view body) {
+/// Appends a response with this body. Appends a refusal and returns `false` if it does not fit into
+/// a frame.
+bool RobotPeer::append(FrameId id, std::string_view body) {
   begin_to_write();
   const std::size_t before = out_.size();
   FrameId response = id;
   response.response = true;
-  if (const auto appended = encoder_.append(out_, response, body); !appended) {
+  const auto appended = encoder_.append(out_, response, body);
+  if (!appended) {
     const auto& protocol = *shared_->protocol;
     if (shared_->unsendable) shared_->unsendable(id_, id, appended.error());
     const Envelope envelope{unix_ms(), protocol.results.protocol.code,
@@ -209,6 +238,7 @@ void RobotPeer::append(FrameId id, std::string_view body) {
         encoder_.append(out_, response, write_envelope(protocol.response_envelope, envelope)));
   }
   shared_->counters.bytes_out += out_.size() - before;
+  return bool(appended);
 }
 
 void RobotPeer::push(Queued report, Instant now) {
@@ -249,6 +279,7 @@ void RobotPeer::send_reports(Instant now) {
       continue;
     }
     shared_->counters.bytes_out += out_.size() - before;
+    ++shared_->counters.reports_sent;
     in_flight_.emplace(token, std::move(sent));
   }
 }
@@ -257,8 +288,10 @@ void RobotPeer::acknowledged(Queued report, std::string_view text) {
   const auto envelope =
       read_envelope(shared_->protocol->response_envelope, text, shared_->settings.limits.json());
   if (!envelope) {
+    ++shared_->counters.reports_refused;
     end(std::move(report), AckOutcomeKind::Invalid);
   } else if (envelope->code && *envelope->code != shared_->protocol->results.success.code) {
+    ++shared_->counters.reports_refused;
     end(std::move(report), AckOutcomeKind::Refused,
         Refusal(*envelope->code, envelope->text.value_or("")));
   } else {
@@ -284,10 +317,12 @@ void RobotPeer::advance(Instant now) {
       const std::size_t before = out_.size();
       static_cast<void>(encoder_.append(out_, due->frame, *found->second.body));
       shared_->counters.bytes_out += out_.size() - before;
+      ++shared_->counters.reports_repeated;
       continue;
     }
     Queued report = std::move(found->second);
     in_flight_.erase(found);
+    ++shared_->counters.reports_timed_out;
     end(std::move(report), AckOutcomeKind::TimedOut);
   }
   send_reports(now);
@@ -298,7 +333,6 @@ void RobotPeer::advance(Instant now) {
     }
     abandon(at->second);
     shared_->handlers.erase(at->first);
-    ++shared_->counters.calls_timed_out;
     answer(at->second.frame, shared_->protocol->results.timeout);
     handled_bytes_ -= at->second.text->size();
     at = handlers_.erase(at);
@@ -337,6 +371,7 @@ std::optional<Instant> RobotPeer::next_due() const {
   };
   for (const auto& [handler, at_work] : handlers_) keep_earlier(at_work.due);
   if (!killed_) keep_earlier(patience());
+  if (pace_.until() > now_) keep_earlier(pace_.until());
   return due;
 }
 

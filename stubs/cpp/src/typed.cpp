@@ -34,7 +34,9 @@ Result<std::string, Refusal> serve_raw(const Protocol& protocol, Context context
 
 Refusal not_implemented(const Protocol& protocol) {
   const ResultText& result = protocol.results.protocol;
-  return {result.code, std::string(result.text) + ": not implemented"};
+  Refusal refusal(result.code, std::string(result.text) + ": not implemented");
+  refusal.is_not_implemented = true;
+  return refusal;
 }
 
 namespace detail {

@@ -457,6 +457,66 @@ void rates(tests::Tally& tally) {
   }
 }
 
+/// Useless frames cost a millisecond each after the first 256: the robot does not read for so long.
+void pace(tests::Tally& tally) {
+  fc_runtime::RobotSettings settings;
+  settings.limits = protocol().defaults.limits;
+  RobotCore core(protocol(), settings, [](const fc_runtime::Request&) {});
+  const Instant now = Instant() + std::chrono::hours(1);
+  const auto id = core.connect(now).value();
+  std::string unknown;
+  static_cast<void>(fc_runtime::Encoder(protocol()).append(unknown, {false, 1, 999, 1}, "{}"));
+  const auto flood = [&](int frames, Instant at) {
+    for (int frame = 0; frame < frames; ++frame) core.received(id, unknown, at);
+  };
+  flood(256, now);
+  tally.check(core.wants_bytes(id) && core.counters().connections_paced == 0, "256 are free");
+  flood(1, now);
+  tally.check(!core.wants_bytes(id) && core.counters().connections_paced == 1, "it rests");
+  flood(1, now);
+  tally.check(core.counters().calls_protocol == 257, "the next frame has to wait");
+  tally.check(core.next_due() == now + milliseconds(1), "for a millisecond");
+  core.advance(now + milliseconds(1));
+  tally.check(core.counters().calls_protocol == 258, "now it is answered");
+  flood(1, now + milliseconds(1000));
+  tally.check(core.wants_bytes(id) && core.counters().bad_frames == 0, "after a while all is free");
+}
+
+/// Each response is counted by its result.
+void results(tests::Tally& tally) {
+  fc_runtime::RobotSettings settings;
+  settings.limits = protocol().defaults.limits;
+  settings.limits.in_flight = 2;
+  std::vector<std::uint64_t> begun;
+  RobotCore core(protocol(), settings, [&](const fc_runtime::Request& request) {
+    begun.push_back(request.handler);
+    request.settled->store(true);
+  });
+  const Instant now = Instant() + std::chrono::hours(1);
+  const auto id = core.connect(now).value();
+  std::string command;
+  static_cast<void>(
+      fc_runtime::Encoder(protocol()).append(command, {false, 1, tests::kEcho, 1}, "{}"));
+  const auto& results = protocol().results;
+  const std::vector<fc_runtime::Handled> ends = {
+      fc_runtime::Handled(std::string("{}")),  fc_runtime::Refusal(results.invalid),
+      fc_runtime::Refusal(results.expired),    fc_runtime::Refusal(7, "no"),
+      fc_runtime::not_implemented(protocol()), fc_runtime::Refusal(results.timeout)};
+  for (const auto& end : ends) {
+    core.received(id, command, now);
+    core.finish(begun.back(), end, now);
+  }
+  core.received(id, command + command + command, now);
+  core.advance(now + settings.handler_timeout);
+  const auto& counters = core.counters();
+  tally.check(counters.calls_succeeded == 1 && counters.calls_refused == 1, "refused by a handler");
+  tally.check(counters.calls_invalid == 1 && counters.calls_expired == 1, "invalid and expired");
+  tally.check(counters.calls_protocol == 1 && counters.calls_not_implemented == 1,
+              "not implemented");
+  tally.check(counters.calls_timed_out == 3 && counters.handlers_abandoned == 2, "too slow");
+  tally.check(counters.in_flight_reached > 0, "the third waits");
+}
+
 /// The robot stops reading from an app that sends requests and does not read responses.
 void back_pressure(tests::Tally& tally) {
   fc_runtime::RobotSettings settings;
@@ -493,6 +553,8 @@ int main(int count, char** arguments) {
   tests::hold(tally, arguments[1], "peer", run);
   patience(tally);
   rates(tally);
+  pace(tally);
+  results(tally);
   back_pressure(tally);
   return tally.outcome("scripts of peers", 50);
 }

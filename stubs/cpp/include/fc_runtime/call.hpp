@@ -29,6 +29,8 @@ struct Refusal {
   std::int64_t code = 0;
   /// Text for people. Never rely on it.
   std::string text;
+  /// `true` if the robot does not implement the command. Not sent, only counted.
+  bool is_not_implemented = false;
 
   Refusal() = default;
   Refusal(std::int64_t result, std::string words) : code(result), text(std::move(words)) {}

@@ -19,31 +19,81 @@
 #include "fc_runtime/client_core.hpp"
 #include "fc_runtime/count.hpp"
 #include "fc_runtime/frame.hpp"
+#include "fc_runtime/pace.hpp"
 #include "fc_runtime/push.hpp"
 #include "fc_runtime/session.hpp"
 
 namespace fc_runtime {
 
 /// The counters of a robot since its start.
-struct RobotCounters {
-  Count connections;            ///< Connections accepted.
-  Count connections_refused;    ///< Connections closed at once because there were too many.
-  Count connections_forbidden;  ///< Connections closed at once because of their address.
-  Count connections_displaced;  ///< Silent connections closed to make room for another.
-  Count connections_evicted;    ///< Connections closed because memory was short and they held most.
-  Count connections_timed_out;  ///< Connections closed because they made no progress.
-  Count bytes_in;               ///< Bytes received.
-  Count bytes_out;              ///< Bytes handed to connections to be sent.
-  Count calls;                  ///< Commands that reached a handler.
-  Count calls_forbidden;        ///< Commands refused because of the address of the app.
-  Count calls_timed_out;        ///< Commands whose handler took too long.
-  Count calls_refused;          ///< Commands with a result other than success.
-  Count handlers_panicked;      ///< Handlers that threw, or whose response could not be sent.
-  Count abandoned_reached;      ///< Commands refused: too many abandoned handlers.
-  Count in_flight_reached;      ///< Pauses of a connection: too many calls in flight.
-  Count reports_acknowledged;   ///< Reports that an app acknowledged.
-  Count reports_dropped;        ///< Reports dropped for newer ones.
-  Count bad_frames;             ///< Frames that could not be read.
+struct ServerCounters {
+  /// Connections accepted at the command port.
+  Count connections;
+  /// Connections accepted at the data port.
+  Count data_connections;
+  /// Connections closed at once at the limit, in total or from their address.
+  Count connections_refused;
+  /// Connections closed at once because their address is not allowed.
+  Count connections_forbidden;
+  /// Connections closed because memory was short and they held most of it.
+  Count connections_evicted;
+  /// Silent connections closed to make room for another.
+  Count connections_displaced;
+  /// Connections closed by a timeout: of a header, of a stalled frame or reader, or of silence.
+  Count connections_timed_out;
+  /// Times a connection was not read for a while because of useless frames.
+  Count connections_paced;
+  /// Requests with a response of success.
+  Count calls_succeeded;
+  /// Requests with the result for a protocol error.
+  Count calls_protocol;
+  /// Requests with the result for a timeout.
+  Count calls_timed_out;
+  /// Requests with the result for an invalid parameter.
+  Count calls_invalid;
+  /// Requests with the result for an expired message.
+  Count calls_expired;
+  /// Requests to which a handler gave another result.
+  Count calls_refused;
+  /// Requests refused because their address does not allow them; included in `calls_protocol`.
+  Count calls_forbidden;
+  /// Requests refused because the robot does not implement their command; included in
+  /// `calls_protocol`.
+  Count calls_not_implemented;
+  /// Handlers that threw, or whose response could not be sent. Their requests are included in
+  /// `calls_protocol`, or earlier in `calls_timed_out`.
+  Count handlers_panicked;
+  /// Handlers that were still running when their response was no longer awaited.
+  Count handlers_abandoned;
+  /// Requests refused because `abandoned_handlers` of these were running; included in
+  /// `calls_protocol`.
+  Count abandoned_reached;
+  /// Times a connection was not read because it had the most requests in flight.
+  Count in_flight_reached;
+  /// Frames that could not be read.
+  Count bad_frames;
+  /// Reports sent for the first time, counted per app.
+  Count reports_sent;
+  /// Reports sent again.
+  Count reports_repeated;
+  /// Reports acknowledged with success.
+  Count reports_acknowledged;
+  /// Reports acknowledged with another result.
+  Count reports_refused;
+  /// Reports given up after the last repetition.
+  Count reports_timed_out;
+  /// Reports dropped because an app's queue was full.
+  Count reports_dropped;
+  /// Frames of streams received.
+  Count stream_frames_in;
+  /// Frames of streams sent.
+  Count stream_frames_out;
+  /// Frames of streams dropped for lack of a receiver.
+  Count stream_frames_dropped;
+  /// Bytes received.
+  Count bytes_in;
+  /// Bytes sent.
+  Count bytes_out;
 };
 
 /// A received command, for the thread that runs its handler.
@@ -103,7 +153,7 @@ struct Queued {
 struct RobotShared {
   const Protocol* protocol = nullptr;
   RobotSettings settings;
-  RobotCounters counters;
+  ServerCounters counters;
   std::function<void(Request)> begin;
   std::function<void(ConnectionId, FrameId, const FrameError&)> unsendable;
   /// `true` while memory is short: the robot reads nothing.
@@ -165,7 +215,8 @@ class RobotPeer {
   void abandon(const AtWork& handler);
   void acknowledged(Queued report, std::string_view text);
   void answer(FrameId id, const Refusal& refusal);
-  void append(FrameId id, std::string_view body);
+  [[nodiscard]] bool append(FrameId id, std::string_view body);
+  void rest(bool must_rest);
   void begin_to_write();
   void send_reports(Instant now);
   void end(Queued report, AckOutcomeKind kind, std::optional<Refusal> refusal = {});
@@ -196,6 +247,7 @@ class RobotPeer {
   Instant now_;
   Instant last_read_;
   Instant last_written_;
+  Pace pace_;
   /// The arrival of the first bytes of the current frame.
   std::optional<Instant> begun_;
   bool heard_ = false;
@@ -225,7 +277,7 @@ class RobotCore {
   /// Removes a broken or closed connection.
   void closed(ConnectionId id);
   /// The counters, for the owner of the sockets, which counts the connections that it closes.
-  [[nodiscard]] RobotCounters& counting() { return shared_->counters; }
+  [[nodiscard]] ServerCounters& counting() { return shared_->counters; }
   /// Sets the callback for responses that do not fit into a frame.
   void set_unsendable(std::function<void(ConnectionId, FrameId, const FrameError&)> told) {
     shared_->unsendable = std::move(told);
@@ -265,7 +317,7 @@ class RobotCore {
   [[nodiscard]] std::vector<ConnectionId> connections() const;
   /// Returns `true` after a shutdown.
   [[nodiscard]] bool is_over() const;
-  [[nodiscard]] const RobotCounters& counters() const { return shared_->counters; }
+  [[nodiscard]] const ServerCounters& counters() const { return shared_->counters; }
 
  private:
   [[nodiscard]] detail::RobotPeer* find(ConnectionId id) const;

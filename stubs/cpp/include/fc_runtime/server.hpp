@@ -187,7 +187,7 @@ class Server {
   /// The currently connected apps.
   [[nodiscard]] std::vector<ConnectionId> connections() const;
   /// The counters of the server.
-  [[nodiscard]] const RobotCounters& counters() const;
+  [[nodiscard]] const ServerCounters& counters() const;
   [[nodiscard]] const Protocol& protocol() const;
 
   /// Shuts down gracefully. The server stops accepting connections and requests, and responds to

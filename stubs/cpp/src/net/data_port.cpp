@@ -14,8 +14,14 @@ constexpr std::size_t kFramesForRobot = 4;
 
 }  // namespace
 
-DataPort::DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings)
-    : protocol_(&protocol), settings_(settings), encoder_(protocol), watching_(io) {
+DataPort::DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings,
+                   ServerCounters& counters)
+    : protocol_(&protocol),
+      settings_(settings),
+      encoder_(protocol),
+      counters_(&counters),
+      watching_(io),
+      pacing_(io) {
   encoder_.set_gzip(settings.gzip);
   encoder_.set_frame_bytes(settings.limits.frame_bytes);
 }
@@ -67,6 +73,7 @@ void DataPort::connect(ConnectionId id, const std::string& address, std::shared_
   peer.link->on_bytes = [this, id](std::string_view bytes) { received(id, bytes); };
   peer.link->on_end = [this, id](const std::error_code&) { end(id); };
   peer.link->on_written = [this, id] { go_on(id); };
+  ++counters_->data_connections;
   const auto link_of = peer.link;
   peers_.emplace(id, std::move(peer));
   link_of->read();
@@ -84,6 +91,7 @@ void DataPort::received(ConnectionId id, std::string_view bytes) {
   if (found == peers_.end()) return;
   found->second.is_heard = true;
   found->second.last_read = clock_now();
+  counters_->bytes_in += bytes.size();
   found->second.decoder.push(bytes);
   take_frames(id, found->second);
   on_held();
@@ -91,6 +99,7 @@ void DataPort::received(ConnectionId id, std::string_view bytes) {
 
 void DataPort::take_frames(ConnectionId id, Peer& peer) {
   for (;;) {
+    if (rest(peer)) return;
     std::unique_lock held(mutex_);
     if (is_wanted_ && inbox_.size() >= kFramesForRobot) {
       peer.link->pause();
@@ -98,18 +107,27 @@ void DataPort::take_frames(ConnectionId id, Peer& peer) {
     }
     const auto next = peer.decoder.next();
     if (next && !*next) break;
+    if (!next) ++counters_->bad_frames;
     if (!next && next.error().is_fatal()) {
       held.unlock();
       end(id);
       return;
     }
     FrameId frame = next ? (*next)->header.frame : next.error().frame;
-    if (next && frame.kind == protocol_->stream_kind && !frame.response) {
+    if (next) pace(peer.pace.inflated(surplus_of(**next, protocol_->header.length), clock_now()));
+    if (next && frame.kind == protocol_->stream_kind && frame.response) continue;
+    if (next && frame.kind == protocol_->stream_kind) {
+      ++counters_->stream_frames_in;
       if (is_wanted_) {
         inbox_.push_back({id, {frame.code, frame.id, std::string((*next)->data)}});
         came_.notify_all();
+      } else {
+        ++counters_->stream_frames_dropped;
       }
-    } else if (!frame.response && protocol_->has_result()) {
+      continue;
+    }
+    pace(peer.pace.unusable(clock_now()));
+    if (!frame.response && protocol_->has_result()) {
       frame.response = true;
       const ResultText& result = protocol_->results.protocol;
       const Envelope envelope{unix_ms(), result.code, std::string(result.text)};
@@ -117,6 +135,7 @@ void DataPort::take_frames(ConnectionId id, Peer& peer) {
       const auto written =
           encoder_.append(bytes, frame, write_envelope(protocol_->response_envelope, envelope));
       if (written && peer.link->unwritten() < settings_.limits.frame_bytes) {
+        counters_->bytes_out += bytes.size();
         peer.link->send(std::move(bytes));
       }
     }
@@ -155,6 +174,28 @@ void DataPort::send(std::optional<ConnectionId> to, std::uint16_t code, std::uin
   on_held();
 }
 
+void DataPort::write(Peer& peer, const std::string& frame) {
+  counters_->bytes_out += frame.size();
+  ++counters_->stream_frames_out;
+  peer.link->send(frame);
+}
+
+void DataPort::pace(bool must_rest) {
+  if (must_rest) ++counters_->connections_paced;
+}
+
+bool DataPort::rest(Peer& peer) {
+  if (peer.pace.until() <= clock_now()) return false;
+  peer.link->pause();
+  if (pacing_.expiry() < clock_now() || peer.pace.until() < pacing_.expiry()) {
+    pacing_.expires_at(peer.pace.until());
+    pacing_.async_wait([this](std::error_code error) {
+      if (!error) resume();
+    });
+  }
+  return true;
+}
+
 void DataPort::settle(const std::shared_ptr<Sending>& sending, bool taken) {
   if (taken) ++sending->taken;
   if (--sending->open == 0) sending->sent(sending->taken);
@@ -167,7 +208,7 @@ void DataPort::go_on(ConnectionId id) {
   Peer& peer = found->second;
   peer.last_written = clock_now();
   if (peer.link->unwritten() == 0 && !peer.queue.empty()) {
-    peer.link->send(*peer.queue.front());
+    write(peer, *peer.queue.front());
     peer.queue.pop_front();
   }
   std::vector<std::shared_ptr<Sending>> taken;
@@ -175,7 +216,7 @@ void DataPort::go_on(ConnectionId id) {
     Waiting waiting = std::move(peer.waiting.front());
     peer.waiting.pop_front();
     if (peer.queue.empty() && peer.link->unwritten() == 0) {
-      peer.link->send(*waiting.frame);
+      write(peer, *waiting.frame);
     } else {
       peer.queue.push_back(std::move(waiting.frame));
     }
@@ -207,6 +248,7 @@ void DataPort::drain() {
 void DataPort::close() {
   while (!peers_.empty()) end(peers_.begin()->first);
   watching_.cancel();
+  pacing_.cancel();
   const std::lock_guard held(mutex_);
   is_over_ = true;
   came_.notify_all();
@@ -257,6 +299,7 @@ void DataPort::watch() {
           peer.link->unwritten() > 0 && after(peer.last_written, settings_.stall_timeout) <= now;
       if (stalls || unread) late.push_back(id);
     }
+    counters_->connections_timed_out += late.size();
     for (const ConnectionId id : late) end(id);
     watch();
   });

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "admission.hpp"
+#include "fc_runtime/pace.hpp"
 #include "fc_runtime/server.hpp"
 #include "link.hpp"
 
@@ -51,9 +52,11 @@ class DataPort {
     bool is_draining = false;
     Instant last_read;
     Instant last_written;
+    Pace pace = {};
   };
 
-  DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings);
+  DataPort(asio::io_context& io, const Protocol& protocol, const RobotSettings& settings,
+           ServerCounters& counters);
 
   /// Called when the port may hold more memory than before.
   std::function<void()> on_held;
@@ -90,6 +93,12 @@ class DataPort {
  private:
   void received(ConnectionId id, std::string_view bytes);
   void take_frames(ConnectionId id, Peer& peer);
+  /// Sends a frame of a stream.
+  void write(Peer& peer, const std::string& frame);
+  /// Counts that a connection must rest after useless work.
+  void pace(bool must_rest);
+  /// Stops reading a connection until the end of its rest. Returns `false` if it need not rest.
+  [[nodiscard]] bool rest(Peer& peer);
   void go_on(ConnectionId id);
   [[nodiscard]] std::size_t held_by(ConnectionId id, const Peer& peer) const;
   void settle(const std::shared_ptr<Sending>& sending, bool taken);
@@ -98,7 +107,9 @@ class DataPort {
   const Protocol* protocol_;
   RobotSettings settings_;
   Encoder encoder_;
+  ServerCounters* counters_;
   asio::steady_timer watching_;
+  asio::steady_timer pacing_;
   bool is_watching_ = false;
   std::map<ConnectionId, Peer> peers_;
 

@@ -85,7 +85,7 @@ class ServerImpl {
         commands_(io_),
         streams_(io_),
         timer_(io_),
-        data_(io_, protocol, settings_),
+        data_(io_, protocol, settings_, core_.counting()),
         workers_(config.handler_threads) {
     core_.set_unsendable([this](ConnectionId id, FrameId frame, const FrameError& error) {
       Context context;
@@ -117,7 +117,7 @@ class ServerImpl {
   [[nodiscard]] const std::string& address() const { return config_.address; }
   [[nodiscard]] std::uint16_t command_port() const { return command_port_; }
   [[nodiscard]] std::uint16_t data_port() const { return data_port_; }
-  [[nodiscard]] const RobotCounters& counters() const { return core_.counters(); }
+  [[nodiscard]] const ServerCounters& counters() const { return core_.counters(); }
   [[nodiscard]] DataPort& data() { return data_; }
   [[nodiscard]] Logger& logger() { return logger_; }
   [[nodiscard]] std::vector<ConnectionId> connections() const {
@@ -566,7 +566,7 @@ Result<Server, BindError> Server::bind(const Protocol& protocol, Service service
 const std::string& Server::address() const { return impl_->address(); }
 std::uint16_t Server::command_port() const { return impl_->command_port(); }
 std::uint16_t Server::data_port() const { return impl_->data_port(); }
-const RobotCounters& Server::counters() const { return impl_->counters(); }
+const ServerCounters& Server::counters() const { return impl_->counters(); }
 const Protocol& Server::protocol() const { return impl_->protocol(); }
 std::vector<ConnectionId> Server::connections() const { return impl_->connections(); }
 
