@@ -212,7 +212,7 @@ const CLIENT_COUNTERS: [(&str, &str, &str); 4] = [
         r"(?m)^  Count (\w+);",
     ),
 ];
-const SERVER_COUNTERS: [(&str, &str, &str); 3] = [
+const SERVER_COUNTERS: [(&str, &str, &str); 4] = [
     (
         "stubs/typescript/src/server/counters.ts",
         "ServerCounters {",
@@ -227,6 +227,11 @@ const SERVER_COUNTERS: [(&str, &str, &str); 3] = [
         "stubs/kotlin/runtime/src/main/kotlin/fc/runtime/Counters.kt",
         "class ServerCounters",
         r"public val (\w+): Long",
+    ),
+    (
+        "stubs/cpp/include/fc_runtime/robot_core.hpp",
+        "struct ServerCounters {",
+        r"(?m)^  Count (\w+);",
     ),
 ];
 

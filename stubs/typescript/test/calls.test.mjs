@@ -84,7 +84,7 @@ test('a broken answer ends its call, and the connection goes on', async () => {
   assert.equal(connection.counters().badFrames, 1)
 })
 
-test('with resync, a connection goes on after garbage', async () => {
+test('connection with resync over garbage', async () => {
   const { raw, connection } = await client({ resync: true })
   const call = connection.call(echo, { text: 'a' })
   await settle()

@@ -89,7 +89,7 @@ async function found(framing, chunks) {
   return out
 }
 
-test('with resync, the next frame after garbage is found, and a damaged one passed over', async () => {
+test('resync over garbage and damaged frames', async () => {
   const { good, damaged, wanted } = pair()
   const garbage = new TextEncoder().encode('garbage')
   const bytes = concat(garbage, damaged, good, good, garbage, good.subarray(0, 3), good)
@@ -103,7 +103,7 @@ test('with resync, the next frame after garbage is found, and a damaged one pass
   }
 })
 
-test('with resync, a search ends after several times the longest frame', async () => {
+test('longest search of resync', async () => {
   const { damaged } = pair()
   const framing = framingOf(codec, true)
   Object.defineProperty(framing, 'frameBytes', { value: damaged.length })

@@ -97,7 +97,7 @@ internal fun limitTests(tests: Tests) {
         robot.loop.settle()
         expect(3, robot.gates.size)
     }
-    tests.case("a call is counted by its result, a full connection once") {
+    tests.case("calls have one counter for each result") {
         val robot = LimitedRobot(ServerConfig().limits(limits.inFlight(2)).handlerTimeout(1000, MILLISECONDS).maxAge(60, SECONDS))
         fun command(code: Int, body: String) = robot.wire.send(FrameId(false, Toy.commandKind, code, 1), body).also { robot.loop.settle() }
         robot.go(1)
@@ -115,7 +115,7 @@ internal fun limitTests(tests: Tests) {
         expect(listOf(1L, 1L, 2L, 1L, 1L, 2L), byResult)
         expect(listOf(1L, 2L, 1L), counters.run { listOf(callsNotImplemented, handlersAbandoned, inFlightReached) })
     }
-    tests.case("a report is counted when it is sent, and again") {
+    tests.case("sent and repeated reports have counters") {
         val robot = LimitedRobot(ServerConfig())
         robot.report(1)
         robot.loop.advance(Toy.defaults.ack.timeout + Toy.defaults.ack.timeout / 8)
