@@ -8,8 +8,8 @@ use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
     call, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate, git, init,
-    inspect, lint, lsp, mock, new, package, places, questions, release, retire, schema, settle,
-    shell,
+    inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire, schema,
+    settle, shell,
 };
 
 /// Styles of help and usage errors.
@@ -78,6 +78,7 @@ pub enum Command {
     Settle(Box<settle::Options>),
     Call(call::Options),
     Mock(mock::Options),
+    Proxy(proxy::Options),
     Decode(decode::Options),
     Encode(encode::Options),
     Drift(drift::Options),

@@ -11,6 +11,7 @@ mod decode;
 mod diff;
 mod drift;
 mod encode;
+mod endpoint;
 mod explain;
 mod fmt;
 mod generate;
@@ -32,6 +33,7 @@ mod plugin;
 mod print;
 mod progress;
 mod project;
+mod proxy;
 mod questions;
 mod recording;
 mod release;
@@ -94,6 +96,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Retire(options) => retire::run(&args.place, options),
         Command::Call(options) => call::run(&args.place, options),
         Command::Mock(options) => mock::run(&args.place, options),
+        Command::Proxy(options) => proxy::run(&args.place, options),
         Command::Lsp(options) => lsp::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),

@@ -7,10 +7,11 @@ use fc_reflect::Reflector;
 use fc_spec::diagnostic::Faults;
 use fc_spec::model::{Kind, Operation};
 use fc_spec::source::Sources;
-use fc_workshop::mock::{Listeners, Settings, serve};
+use fc_workshop::mock::{Settings, serve};
 use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::scenario::{Scenario, Verdict};
 
+use crate::endpoint::{self, Ports};
 use crate::help::{Help, Part};
 use crate::input;
 use crate::lang::{both, in_lang, said};
@@ -22,25 +23,8 @@ use crate::spec::{Spec, show_faults};
 /// Options of `fcproto mock`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(
-        long,
-        value_name = "HOST",
-        default_value = "127.0.0.1",
-        help = both("监听的地址", "Address to listen on")
-    )]
-    host: String,
-    #[arg(
-        long,
-        value_name = "PORT",
-        help = both("指令端口，0 为任意 [默认：按规范]", "Command port, 0 for any [default: by the spec]")
-    )]
-    command_port: Option<u16>,
-    #[arg(
-        long,
-        value_name = "PORT",
-        help = both("数据端口，0 为任意 [默认：按规范]", "Data port, 0 for any [default: by the spec]")
-    )]
-    data_port: Option<u16>,
+    #[command(flatten)]
+    ports: Ports,
     #[arg(
         long,
         value_name = "MS",
@@ -106,11 +90,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec.show_faults()?;
         return Ok(spec.status());
     };
-    let usual = Settings::of(model);
     let mut settings = Settings {
-        host: options.host.clone(),
-        command_port: options.command_port.unwrap_or(usual.command_port),
-        data_port: options.data_port.unwrap_or(usual.data_port),
         pace: Duration::from_millis(options.pace),
         stream_after: options.stream_after.clone(),
         scenario: None,
@@ -133,11 +113,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         }
     }
     block_on(async {
-        let listeners = Listeners::bind(&settings).await?;
-        let (commands, data) = listeners.addresses()?;
+        let listeners = options.ports.listen(model).await?;
+        let addresses = listeners.addresses()?;
         // Before the first line, because its reader may end the mock at once.
         let mut interrupt = Interrupt::new()?;
-        print::result(&format!("commands {commands} data {data}\n"))?;
+        print::result(&endpoint::line(addresses))?;
         let verdict = serve(model, &settings, listeners, interrupt.next()).await;
         let Some(verdict) = verdict.filter(|_| settings.expect) else {
             return Ok(Status::Fine);

@@ -9,7 +9,8 @@ use fc_spec::retire::RetireError;
 use fc_spec::scaffold::ScaffoldError;
 use fc_workshop::arguments::ArgumentError;
 use fc_workshop::client::ClientError;
-use fc_workshop::mock::MockError;
+use fc_workshop::fault::FaultError;
+use fc_workshop::listen::ListenError;
 
 use crate::lang::{in_lang, said};
 use std::error::Error;
@@ -87,7 +88,8 @@ fn words(failure: &(dyn Error + 'static)) -> String {
         VersionError,
         ArgumentError,
         ClientError,
-        MockError
+        ListenError,
+        FaultError
     );
     failure.to_string()
 }

@@ -9,6 +9,7 @@ use fc_workshop::arguments::json;
 use fc_workshop::client::{Client, ClientError};
 
 use super::{Request, show};
+use crate::endpoint::with_port;
 use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::print;
@@ -44,7 +45,7 @@ impl<'m> Call<'_, 'm> {
         let port = request.operation.map(|operation| operation.port);
         let ports = &self.reflector.model().transport.ports;
         let port = port.map_or(&ports.command, |role| ports.get(role));
-        let address = address(self.to, port.number);
+        let address = with_port(self.to, port.number);
         let mut client = Client::connect(self.reflector, &address, self.timeout).await?;
         if let Some(operation) = request.operation
             && operation.kind() == Kind::Stream
@@ -177,14 +178,4 @@ fn invalid(error: &fc_reflect::BodyError) -> Status {
     );
     print::failure(Failure::from(text).as_ref());
     Status::Unanswered
-}
-
-/// Adds the port to an address that has none. An IPv6 address with a port has brackets.
-fn address(to: &str, port: u16) -> String {
-    let is_bare_v6 = to.parse::<std::net::Ipv6Addr>().is_ok();
-    match to.rsplit_once(':') {
-        _ if is_bare_v6 => format!("[{to}]:{port}"),
-        Some((_, number)) if number.parse::<u16>().is_ok() => to.to_owned(),
-        _ => format!("{to}:{port}"),
-    }
 }

@@ -14,8 +14,8 @@ use crate::args::{self, Args};
 use crate::lang::both;
 use crate::{
     call, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate, git, init,
-    inspect, lint, lsp, mock, new, package, places, questions, release, retire, schema, settle,
-    shell,
+    inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire, schema,
+    settle, shell,
 };
 
 pub use page::{Options as PageOptions, run as page};
@@ -69,6 +69,7 @@ fn of(path: &[&str]) -> Option<Help> {
         ["settle"] => settle::help(),
         ["call"] => call::help(),
         ["mock"] => mock::help(),
+        ["proxy"] => proxy::help(),
         ["decode"] => decode::help(),
         ["encode"] => encode::help(),
         ["drift"] => drift::help(),

@@ -50,7 +50,7 @@ fn the_app_tours_a_mock_of_the_spec() {
         pace: Duration::from_millis(1),
         // The example robot, too, sends its picture after this command.
         stream_after: vec!["get_map_image".to_owned()],
-        ..Settings::any_port()
+        ..Settings::default()
     };
     let mock = Mock::start(model, settings).unwrap();
     tour(&app, [mock.commands().port(), mock.data().port()]);

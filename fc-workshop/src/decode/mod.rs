@@ -19,7 +19,7 @@ pub use json::line as json;
 pub use pair::Request;
 pub use source::{DecodeError, Source, read};
 pub(crate) use text::{clipped, clock, scalar};
-pub use text::{hex, tree as text};
+pub use text::{hex, line, tree as text};
 
 use crate::capture::Flow;
 use fc_reflect::{

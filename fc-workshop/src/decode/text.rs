@@ -35,6 +35,22 @@ pub fn tree(record: &Record<'_>, model: &Model, lang: Lang) -> String {
     tree.out
 }
 
+/// Returns a record as one line: its title, and the name of its error.
+#[must_use]
+pub fn line(record: &Record<'_>, model: &Model, lang: Lang) -> String {
+    let mut tree = Tree {
+        out: String::new(),
+        model,
+        lang,
+    };
+    tree.title(record);
+    let mut line = tree.out.trim_end().to_owned();
+    if let Some(error) = &record.error {
+        let _ = write!(line, " · {}", error.name());
+    }
+    line
+}
+
 struct Tree<'m> {
     out: String,
     model: &'m Model,

@@ -10,11 +10,11 @@ mod streams;
 
 use crate::connection::{Connection, Event};
 use crate::facts;
+use crate::listen::{ListenError, Listeners};
 use crate::scenario::{Scenario, Verdict};
 use apps::{Apps, Report};
 use fc_reflect::Reflector;
-use fc_spec::model::{Model, Text};
-use fc_spec::text;
+use fc_spec::model::Model;
 use futures_util::stream::{FuturesUnordered, StreamExt as _};
 use robot::{Answer, Robot};
 use std::cell::RefCell;
@@ -23,9 +23,8 @@ use std::pin::pin;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use std::{fmt, io};
 use streams::Streams;
-use tokio::net::{TcpListener, TcpStream};
+use tokio::net::TcpStream;
 use tokio::sync::{Notify, oneshot};
 
 /// Time between the last expected event of a scenario and its end.
@@ -34,12 +33,6 @@ const CALM: Duration = Duration::from_millis(300);
 /// The settings of a mock.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Host name or address.
-    pub host: String,
-    /// Port of commands; 0 for any free port.
-    pub command_port: u16,
-    /// Port of streams; 0 for any free port.
-    pub data_port: u16,
     /// The time between two reports of a process whose interval the spec does not specify.
     pub pace: Duration,
     /// Names of commands after which bytes with their code and message id are sent on the data port.
@@ -50,106 +43,15 @@ pub struct Settings {
     pub expect: bool,
 }
 
-impl Settings {
-    /// Returns free ports on loopback, for tests.
-    #[must_use]
-    pub fn any_port() -> Self {
+impl Default for Settings {
+    fn default() -> Self {
         Self {
-            host: "127.0.0.1".to_owned(),
-            command_port: 0,
-            data_port: 0,
             pace: Duration::from_millis(500),
             stream_after: Vec::new(),
             scenario: None,
             expect: false,
         }
     }
-
-    /// Returns the ports of a spec on loopback.
-    #[must_use]
-    pub fn of(model: &Model) -> Self {
-        Self {
-            command_port: model.transport.ports.command.number,
-            data_port: model.transport.ports.data.number,
-            ..Self::any_port()
-        }
-    }
-}
-
-/// The reason why a mock does not start.
-#[derive(Debug)]
-pub enum MockError {
-    /// It cannot listen on an address.
-    Listen {
-        /// Address.
-        address: String,
-        /// Reason.
-        error: io::Error,
-    },
-    /// The system gives no thread or timer.
-    System(io::Error),
-}
-
-impl MockError {
-    /// Returns the message in both languages.
-    #[must_use]
-    pub fn text(&self) -> Text {
-        match self {
-            Self::Listen { address, error } => text!(
-                "无法监听 {address}：{error}；换一个端口，0 表示任意空闲端口",
-                "cannot listen on {address}: {error}; choose another port, or 0 for any free port"
-            ),
-            Self::System(error) => {
-                text!("无法启动模拟端：{error}", "cannot start the mock: {error}")
-            }
-        }
-    }
-}
-
-impl fmt::Display for MockError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for MockError {}
-
-/// The sockets of a mock.
-#[derive(Debug)]
-pub struct Listeners {
-    commands: TcpListener,
-    data: TcpListener,
-}
-
-impl Listeners {
-    /// Listens on the ports.
-    ///
-    /// # Errors
-    /// [`MockError::Listen`].
-    pub async fn bind(settings: &Settings) -> Result<Self, MockError> {
-        Ok(Self {
-            commands: listen(&settings.host, settings.command_port).await?,
-            data: listen(&settings.host, settings.data_port).await?,
-        })
-    }
-
-    /// Returns the addresses of the command port and the data port.
-    ///
-    /// # Errors
-    /// [`MockError::System`].
-    pub fn addresses(&self) -> Result<(SocketAddr, SocketAddr), MockError> {
-        let commands = self.commands.local_addr().map_err(MockError::System)?;
-        let data = self.data.local_addr().map_err(MockError::System)?;
-        Ok((commands, data))
-    }
-}
-
-async fn listen(host: &str, port: u16) -> Result<TcpListener, MockError> {
-    let bound = TcpListener::bind((host, port)).await;
-    bound.map_err(|error| MockError::Listen {
-        address: format!("{host}:{port}"),
-        error,
-    })
 }
 
 /// Plays the robot of a model until `end` is ready, or until its scenario ends. Returns the verdict of a scenario.
@@ -344,16 +246,16 @@ pub struct Mock {
 }
 
 impl Mock {
-    /// Starts a mock.
+    /// Starts a mock on any free ports of loopback.
     ///
     /// # Errors
-    /// [`MockError`] if it cannot listen.
-    pub fn start(model: Model, settings: Settings) -> Result<Self, MockError> {
+    /// [`ListenError`] if it cannot listen.
+    pub fn start(model: Model, settings: Settings) -> Result<Self, ListenError> {
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .build()
-            .map_err(MockError::System)?;
-        let listeners = runtime.block_on(Listeners::bind(&settings))?;
+            .map_err(ListenError::System)?;
+        let listeners = runtime.block_on(Listeners::bind("127.0.0.1", 0, 0))?;
         let (commands, data) = listeners.addresses()?;
         let (stop, stopped) = oneshot::channel::<()>();
         let run = move || {
@@ -363,7 +265,7 @@ impl Mock {
             }))
         };
         let thread = std::thread::Builder::new().name("mock".to_owned());
-        let thread = thread.spawn(run).map_err(MockError::System)?;
+        let thread = thread.spawn(run).map_err(ListenError::System)?;
         Ok(Self {
             commands,
             data,

@@ -94,7 +94,7 @@ fn scenario(model: &Model, text: &str) -> Option<Scenario> {
 fn invalid_requests_get_the_results_of_the_protocol() {
     let model = small();
     let reflector = Reflector::new(&model);
-    let mock = Mock::start(model.clone(), Settings::any_port()).unwrap();
+    let mock = Mock::start(model.clone(), Settings::default()).unwrap();
     block_on(async {
         let mut app = App::connect(&reflector, &mock).await;
         assert_eq!(app.call("set_light", r#"{"lvl":7}"#).await.0, 0);
@@ -121,7 +121,7 @@ fn a_process_runs_from_its_start_to_its_end() {
     let reflector = Reflector::new(&model);
     let settings = Settings {
         pace: Duration::from_millis(1),
-        ..Settings::any_port()
+        ..Settings::default()
     };
     let mock = Mock::start(model.clone(), settings).unwrap();
     block_on(async {
@@ -148,7 +148,7 @@ fn a_process_runs_from_its_start_to_its_end() {
 fn preconditions_refuse_and_values_are_kept() {
     let model = small_with(lively);
     let reflector = Reflector::new(&model);
-    let mock = Mock::start(model.clone(), Settings::any_port()).unwrap();
+    let mock = Mock::start(model.clone(), Settings::default()).unwrap();
     block_on(async {
         let mut app = App::connect(&reflector, &mock).await;
         let (code, response) = app.call("get_light", "{}").await;
@@ -184,7 +184,7 @@ never: [unknown_body]
         let settings = Settings {
             scenario: scenario(&model, text),
             expect: true,
-            ..Settings::any_port()
+            ..Settings::default()
         };
         Mock::start(model.clone(), settings).unwrap()
     };

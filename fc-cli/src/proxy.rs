@@ -1,0 +1,172 @@
+//! `fcproto proxy`.
+
+use std::io;
+
+use fc_reflect::Reflector;
+use fc_spec::model::{HeaderRole, Model};
+use fc_workshop::decode;
+use fc_workshop::fault::Fault;
+use fc_workshop::proxy::{Event, Settings, serve};
+use fc_workshop::run::{Interrupt, block_on};
+use serde_json::json;
+
+use crate::endpoint::{self, Ports, at_port, with_port};
+use crate::help::{Help, Part};
+use crate::lang::{both, lang, said};
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::recording::Shown;
+use crate::spec::Spec;
+
+/// Options of `fcproto proxy`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    #[arg(
+        long,
+        value_name = "HOST[:PORT]",
+        help = both("机器人的地址；端口默认按规范", "Address of the robot; the port is that of the spec by default")
+    )]
+    to: String,
+    #[arg(
+        long,
+        value_name = "PORT",
+        help = both("机器人的数据端口 [默认：按规范]", "Data port of the robot [default: by the spec]")
+    )]
+    to_data_port: Option<u16>,
+    #[command(flatten)]
+    ports: Ports,
+    #[arg(
+        long = "fault",
+        value_name = "FAULT",
+        help = both("注入故障：`种类[=值][:指令][:10%]`", "Inject a fault: `KIND[=VALUE][:NAME][:10%]`")
+    )]
+    faults: Vec<String>,
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "faults",
+        help = both("随机故障的种子 [默认：任意]", "Seed of faults by chance [default: any]")
+    )]
+    seed: Option<u64>,
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        help = both("输出格式", "Output format")
+    )]
+    format: Shown,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "在 app 与机器人之间转发，并显示每一帧",
+            "Forward between an app and a robot, and show each frame",
+        ),
+        details: vec![
+            Part::Text(both(
+                "让 app 连接代理，代理再连接机器人。所有字节原样转发，包括未知的功能码和不是帧的字节。每帧显示一行：接口、消息号、\
+                 长度、时间、方向、响应时间和错误。标准输出的第一行是两个端口的地址。Ctrl-C 结束。",
+                "Connect the app to the proxy, which connects to the robot. All bytes are forwarded unchanged, also unknown codes and \
+                 bytes that are no frame. Each frame is one line: operation, message id, length, time, direction, response time and \
+                 error. The first line on standard output has the addresses of both ports. Ctrl-C ends the proxy.",
+            )),
+            Part::Text(both(
+                "`--fault` 注入故障，可重复：`delay=毫秒`、`drop-acknowledgement`、`duplicate-response`、`wrong-id`、`cut`、\
+                 `bad-digest`、`slow=每秒字节数`、`unknown-key`、`unknown-value`、`gzip`。后面可接接口名称或功能码，以及 `10%`、\
+                 `every=5`、`only=3` 或 `after=3`。种子相同，同样的帧得到同样的故障。",
+                "`--fault` injects a fault and can be repeated: `delay=MS`, `drop-acknowledgement`, `duplicate-response`, `wrong-id`, \
+                 `cut`, `bad-digest`, `slow=BYTES_PER_SECOND`, `unknown-key`, `unknown-value`, `gzip`. Add the name or code of an \
+                 operation, and `10%`, `every=5`, `only=3` or `after=3`. The same seed gives the same frames the same faults.",
+            )),
+            Part::Examples(vec![
+                ("fcproto proxy --to 192.168.1.3", ""),
+                (
+                    "fcproto proxy --to 192.168.1.3 --fault drop-acknowledgement:50% --seed 7",
+                    both("丢掉一半应答", "Lose half of the acknowledgements"),
+                ),
+                (
+                    "fcproto proxy --to 192.168.1.3 --fault delay=2000:get_robot_sn:every=3",
+                    both(
+                        "每第三帧 get_robot_sn 晚到两秒",
+                        "Every third frame of get_robot_sn is late by two seconds",
+                    ),
+                ),
+            ]),
+        ],
+        fails: both("规范有错误", "Errors in the spec"),
+        speaks: both("`text` 格式", "`text`"),
+    }
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    let Some(model) = &spec.model else {
+        spec.show_faults()?;
+        return Ok(spec.status());
+    };
+    let ports = &model.transport.ports;
+    let faults = options.faults.iter();
+    let faults: Result<Vec<_>, _> = faults.map(|text| Fault::read(model, text)).collect();
+    let data_port = options.to_data_port.unwrap_or(ports.data.number);
+    let settings = Settings {
+        commands: with_port(&options.to, ports.command.number),
+        data: at_port(&options.to, data_port),
+        faults: faults?,
+        seed: options.seed.unwrap_or_else(fc_workshop::fault::any_seed),
+    };
+    let reflector = Reflector::new(model);
+    block_on(async {
+        let listeners = options.ports.listen(model).await?;
+        let addresses = listeners.addresses()?;
+        // Before the first line, because its reader may end the proxy at once.
+        let mut interrupt = Interrupt::new()?;
+        print::result(&endpoint::line(addresses))?;
+        if !settings.faults.is_empty() && options.seed.is_none() {
+            let seed = settings.seed;
+            print::done(&said!("种子 {seed}\n", "seed {seed}\n"))?;
+        }
+        let show = &mut |event: Event<'_, '_>| show(model, options.format, &event);
+        serve(&reflector, &settings, listeners, show, interrupt.next()).await?;
+        Ok(Status::Fine)
+    })?
+}
+
+fn show(model: &Model, format: Shown, event: &Event<'_, '_>) -> io::Result<()> {
+    let line = match (event, format) {
+        (Event::Record(record), Shown::Json) => decode::json(record),
+        (Event::Record(record), Shown::Text) => decode::line(record, model, lang()),
+        (Event::Faults { flow, id, kinds }, Shown::Json) => {
+            let kinds: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
+            let line = json!({
+                "connection": flow.to_string(),
+                "code": format!("0x{:04X}", id.code),
+                "msg_id": id.id,
+                "faults": kinds,
+            });
+            line.to_string()
+        }
+        (Event::Faults { flow, id, kinds }, Shown::Text) => {
+            let kinds: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
+            let key = model.frame.field(HeaderRole::Id);
+            let key = key.map_or("id", |field| field.wire.as_str());
+            let parts = [
+                format!("  {} 0x{:04X}", both("故障", "fault"), id.code),
+                kinds.join(", "),
+                format!("{key} {}", id.id),
+                flow.to_string(),
+            ];
+            parts.join(" · ")
+        }
+        (Event::Unreachable(address, error), _) => {
+            let error = said!(
+                "无法连接机器人 {address}：{error}",
+                "cannot connect to the robot {address}: {error}"
+            );
+            print::failure(Failure::from(error).as_ref());
+            return Ok(());
+        }
+    };
+    print::result(&(line + "\n"))
+}

@@ -1,0 +1,285 @@
+//! A proxy between apps and a robot. It forwards everything, describes the frames, and injects faults.
+//!
+//! ```text
+//! app ──read──► relay ──► robot        one relay for each direction of a connection
+//!                 └─► Decoder ──► Event::Record
+//! ```
+
+use crate::capture::Flow;
+use crate::decode::{Decoder, Record};
+use crate::facts;
+use crate::fault::{Delivery, Fault, FaultKind, Faults};
+use crate::listen::Listeners;
+use crate::stream::FrameStream;
+use fc_reflect::{FrameId, Reflector};
+use futures_util::stream::{FuturesUnordered, StreamExt as _};
+use std::cell::RefCell;
+use std::io;
+use std::num::NonZeroU32;
+use std::pin::pin;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
+use tokio::time::{sleep, timeout};
+
+/// Room for one read, in bytes.
+const READ: usize = 16 * 1024;
+
+/// The pieces of a second in which a slow frame is written.
+const PER_SECOND: u32 = 20;
+
+/// The settings of a proxy.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Address of the robot's command port.
+    pub commands: String,
+    /// Address of the robot's data port.
+    pub data: String,
+    /// The faults to inject.
+    pub faults: Vec<Fault>,
+    /// The seed of the faults that strike by chance.
+    pub seed: u64,
+}
+
+/// An observation of a proxy.
+#[derive(Debug)]
+pub enum Event<'e, 'm> {
+    /// A frame, or bytes that are none, as the sender sent them.
+    Record(&'e Record<'m>),
+    /// Faults in a frame.
+    Faults {
+        /// The direction of the connection.
+        flow: Flow,
+        /// The frame.
+        id: FrameId,
+        /// The faults.
+        kinds: &'e [FaultKind],
+    },
+    /// The robot accepts no connection at an address.
+    Unreachable(&'e str, &'e io::Error),
+}
+
+/// Receives the observations of a proxy.
+pub type Sink<'o, 'm> = dyn FnMut(Event<'_, 'm>) -> io::Result<()> + 'o;
+
+/// Forwards connections until `end` is ready.
+///
+/// # Errors
+/// The error of `sink`.
+pub async fn serve<'m>(
+    reflector: &Reflector<'m>,
+    settings: &Settings,
+    listeners: Listeners,
+    sink: &mut Sink<'_, 'm>,
+    end: impl Future<Output = ()>,
+) -> io::Result<()> {
+    let most = facts::limits(reflector.model()).connections;
+    let proxy = &Proxy {
+        reflector,
+        settings,
+        watch: RefCell::new(Watch {
+            decoder: Decoder::new(reflector),
+            sink,
+        }),
+    };
+    let mut links = FuturesUnordered::new();
+    let mut end = pin!(end);
+    let mut count = 0;
+    loop {
+        tokio::select! {
+            () = &mut end => return proxy.watch.borrow_mut().finish(),
+            accepted = listeners.commands.accept(), if links.len() < most => {
+                if let Ok((app, _)) = accepted {
+                    count += 1;
+                    links.push(proxy.link(app, &settings.commands, count));
+                }
+            }
+            accepted = listeners.data.accept(), if links.len() < most => {
+                if let Ok((app, _)) = accepted {
+                    count += 1;
+                    links.push(proxy.link(app, &settings.data, count));
+                }
+            }
+            Some(ended) = links.next(), if !links.is_empty() => ended?,
+        }
+    }
+}
+
+/// The parts of a proxy that its connections share.
+struct Proxy<'r, 'm, 's, 'o> {
+    reflector: &'r Reflector<'m>,
+    settings: &'r Settings,
+    watch: RefCell<Watch<'r, 'm, 's, 'o>>,
+}
+
+/// The observer of all connections.
+struct Watch<'r, 'm, 's, 'o> {
+    decoder: Decoder<'r, 'm>,
+    sink: &'s mut Sink<'o, 'm>,
+}
+
+impl<'m> Watch<'_, 'm, '_, '_> {
+    fn bytes(&mut self, flow: Flow, bytes: &[u8]) -> io::Result<()> {
+        let Self { decoder, sink } = self;
+        let time = SystemTime::now().duration_since(UNIX_EPOCH).ok();
+        let mut sink = |record: &Record<'m>| sink(Event::Record(record));
+        decoder.push(Some(flow), time, bytes, &mut sink)
+    }
+
+    fn close(&mut self, flow: Flow) -> io::Result<()> {
+        let Self { decoder, sink } = self;
+        let mut sink = |record: &Record<'m>| sink(Event::Record(record));
+        decoder.close(Some(flow), &mut sink)
+    }
+
+    fn finish(&mut self) -> io::Result<()> {
+        let Self { decoder, sink } = self;
+        decoder.finish(&mut |record| sink(Event::Record(record)))
+    }
+}
+
+/// The end of a relay.
+enum End {
+    /// The sender has closed its side.
+    Closed,
+    /// The connection is broken, or a fault ends it.
+    Broken,
+}
+
+impl<'m> Proxy<'_, 'm, '_, '_> {
+    /// Forwards a connection in both directions until it ends.
+    async fn link(&self, app: TcpStream, robot: &str, number: u64) -> io::Result<()> {
+        let wait = facts::call_timeout(self.reflector.model());
+        let connected = timeout(wait, TcpStream::connect(robot)).await;
+        let robot = match connected.unwrap_or_else(|_| Err(io::ErrorKind::TimedOut.into())) {
+            Ok(stream) => stream,
+            Err(error) => {
+                let mut watch = self.watch.borrow_mut();
+                return (watch.sink)(Event::Unreachable(robot, &error));
+            }
+        };
+        for stream in [&app, &robot] {
+            // Without it, small frames only travel later.
+            let _ = stream.set_nodelay(true);
+        }
+        let (Ok(from), Ok(to)) = (app.peer_addr(), robot.peer_addr()) else {
+            return Ok(());
+        };
+        let flow = Flow { from, to };
+        let (app_reads, app_writes) = app.into_split();
+        let (robot_reads, robot_writes) = robot.into_split();
+        let mut there = pin!(self.relay(flow, app_reads, robot_writes, 2 * number));
+        let mut back = pin!(self.relay(flow.reversed(), robot_reads, app_writes, 2 * number + 1));
+        let (mut there_ended, mut back_ended) = (false, false);
+        while !(there_ended && back_ended) {
+            let end = tokio::select! {
+                end = &mut there, if !there_ended => {
+                    there_ended = true;
+                    end?
+                }
+                end = &mut back, if !back_ended => {
+                    back_ended = true;
+                    end?
+                }
+            };
+            if matches!(end, End::Broken) {
+                break;
+            }
+        }
+        let mut watch = self.watch.borrow_mut();
+        watch.close(flow)?;
+        watch.close(flow.reversed())
+    }
+
+    /// Forwards one direction.
+    async fn relay(
+        &self,
+        flow: Flow,
+        mut reader: OwnedReadHalf,
+        mut writer: OwnedWriteHalf,
+        stream: u64,
+    ) -> io::Result<End> {
+        let Settings { faults, seed, .. } = self.settings;
+        let faults = Faults::new(self.reflector, faults, *seed, stream);
+        let mut faulty = (!self.settings.faults.is_empty()).then(|| Faulty {
+            faults,
+            frames: FrameStream::new(),
+        });
+        let mut buffer = vec![0; READ];
+        loop {
+            let Ok(count) = reader.read(&mut buffer).await else {
+                return Ok(End::Broken);
+            };
+            let bytes = buffer.get(..count).unwrap_or_default();
+            self.watch.borrow_mut().bytes(flow, bytes)?;
+            let written = match &mut faulty {
+                Some(faulty) => self.deliver(faulty, flow, bytes, &mut writer).await?,
+                None => writer.write_all(bytes).await.is_ok(),
+            };
+            if !written {
+                return Ok(End::Broken);
+            }
+            if count == 0 {
+                // The receiver may have left already.
+                let _ = writer.shutdown().await;
+                return Ok(End::Closed);
+            }
+        }
+    }
+
+    /// Forwards the frames in received bytes, with their faults; no bytes are the end. Returns `false` if the connection
+    /// ends here.
+    async fn deliver(
+        &self,
+        faulty: &mut Faulty<'_, 'm>,
+        flow: Flow,
+        bytes: &[u8],
+        writer: &mut OwnedWriteHalf,
+    ) -> io::Result<bool> {
+        faulty.frames.room().extend_from_slice(bytes);
+        loop {
+            let piece = match faulty.frames.next(self.reflector) {
+                Ok(Some(piece)) => piece,
+                Ok(None) if !bytes.is_empty() => return Ok(true),
+                // The end of the bytes, or bytes that are no frame.
+                Ok(None) | Err(_) => {
+                    let rest = std::mem::take(&mut faulty.frames);
+                    return Ok(writer.write_all(rest.rest()).await.is_ok());
+                }
+            };
+            let delivery = faulty.faults.deliver(&piece);
+            if let (Ok(frame), false) = (&piece.frame, delivery.faults.is_empty()) {
+                (self.watch.borrow_mut().sink)(Event::Faults {
+                    flow,
+                    id: frame.id,
+                    kinds: &delivery.faults,
+                })?;
+            }
+            if write(&delivery, writer).await.is_err() || delivery.ends {
+                return Ok(false);
+            }
+        }
+    }
+}
+
+/// The frames of a direction, with their faults.
+struct Faulty<'r, 'm> {
+    faults: Faults<'r, 'm>,
+    frames: FrameStream,
+}
+
+/// Writes a frame as it arrives.
+async fn write(delivery: &Delivery, writer: &mut OwnedWriteHalf) -> io::Result<()> {
+    sleep(delivery.delay).await;
+    let Some(rate) = delivery.rate else {
+        return writer.write_all(&delivery.bytes).await;
+    };
+    let size = (rate.get() / PER_SECOND).max(1);
+    let pause = Duration::from_secs(1) * size / NonZeroU32::get(rate);
+    for piece in delivery.bytes.chunks(size as usize) {
+        writer.write_all(piece).await?;
+        sleep(pause).await;
+    }
+    Ok(())
+}
