@@ -74,20 +74,20 @@ pub fn help() -> Help {
             )),
             Part::Text(both(
                 "`--fault` 注入故障，可重复：`delay=毫秒`、`drop-acknowledgement`、`duplicate-response`、`wrong-id`、`cut`、\
-                 `bad-digest`、`slow=每秒字节数`、`unknown-key`、`unknown-value`、`gzip`。后面可接接口名称或功能码，以及 `10%`、\
+                 `bad-digest`、`slow=每秒字节数`、`unknown-key`、`unknown-value`、`compress`。后面可接接口名称或功能码，以及 `10%`、\
                  `every=5`、`only=3` 或 `after=3`。种子相同，同样的帧得到同样的故障。",
                 "`--fault` injects a fault and can be repeated: `delay=MS`, `drop-acknowledgement`, `duplicate-response`, `wrong-id`, \
-                 `cut`, `bad-digest`, `slow=BYTES_PER_SECOND`, `unknown-key`, `unknown-value`, `gzip`. Add the name or code of an \
+                 `cut`, `bad-digest`, `slow=BYTES_PER_SECOND`, `unknown-key`, `unknown-value`, `compress`. Add the name or code of an \
                  operation, and `10%`, `every=5`, `only=3` or `after=3`. The same seed gives the same frames the same faults.",
             )),
             Part::Examples(vec![
-                ("fcproto proxy --to 192.168.1.3", ""),
+                ("fcproto proxy --to robot.local", ""),
                 (
-                    "fcproto proxy --to 192.168.1.3 --fault drop-acknowledgement:50% --seed 7",
+                    "fcproto proxy --to robot.local --fault drop-acknowledgement:50% --seed 7",
                     both("丢掉一半应答", "Lose half of the acknowledgements"),
                 ),
                 (
-                    "fcproto proxy --to 192.168.1.3 --fault delay=2000:get_robot_sn:every=3",
+                    "fcproto proxy --to robot.local --fault delay=2000:get_robot_sn:every=3",
                     both(
                         "每第三帧 get_robot_sn 晚到两秒",
                         "Every third frame of get_robot_sn is late by two seconds",

@@ -428,23 +428,35 @@ pub fn code(text: &str) -> String {
     format!("{mark}{pad}{text}{pad}{mark}")
 }
 
-/// Returns the comment on a message that is a whole body.
+/// Returns the short comment on a constant of an operation. The methods have the long one.
+pub fn constant_docs<'m>(context: &Context<'_>, operation: &'m Operation) -> Docs<'m> {
+    let mut docs = Docs::titled(&operation.title);
+    docs.paragraph(operation_facts(context.style, operation));
+    docs
+}
+
+/// Returns the comment on a message that is a whole body. The methods of a command describe it, so its request only has
+/// its title and its links.
 pub fn body_docs<'m>(
     context: &Context<'_>,
     operation: &'m Operation,
     direction: Direction,
 ) -> Docs<'m> {
     let mut docs = side_docs(operation, direction);
-    if direction == Direction::Request {
+    let has_methods = operation.kind() == Kind::Command && operation.code.value.is_some();
+    let is_described = direction == Direction::Request && !has_methods;
+    if is_described {
         docs.texts(operation.about.as_ref());
-        if let Some(deprecation) = &operation.deprecated {
-            withdrawn(&mut docs, deprecation);
-        }
+    }
+    if direction == Direction::Request
+        && let Some(deprecation) = &operation.deprecated
+    {
+        withdrawn(&mut docs, deprecation);
     }
     if let Some(body) = operation.body(direction) {
         body_state(&mut docs, body);
     }
-    if direction == Direction::Request {
+    if is_described {
         operation_end(context.style, &mut docs, operation);
     }
     docs.paragraph(context.links(&operation.location, &page_of(operation)));

@@ -17,14 +17,6 @@ use fc_runtime::Extra;
 /// 查询上装：请求
 /// Get the upper body's status: request
 ///
-/// 返回推杆、被释放的箱体和各门锁的状态。源文档称它是“原接口，未修改”；控制格口前会先查询上装，上位机（app）根据下位机（机器人）返回的状态控制格口门。
-///
-/// Returns the status of the push rod, of the released compartment and of the door locks. The
-/// source calls it an existing command, unchanged: the upper body is queried before a compartment
-/// is operated, and the app controls the doors according to the status returned.
-///
-/// Code 0x0204. Only reads.
-///
 /// - Spec: `commands.get_upper_body_status` in `spec/commands/upper_body.yaml`
 /// - 文档：`docs-site/reference/commands/get_upper_body_status.md`
 /// - Docs: `docs-site/en/reference/commands/get_upper_body_status.md`

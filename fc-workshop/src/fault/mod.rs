@@ -48,10 +48,22 @@ pub enum FaultKind {
     /// An enum of a message has a value that the spec lacks.
     UnknownValue,
     /// The data of a frame is compressed.
-    Gzip,
+    Compress,
 }
 
 impl FaultKind {
+    /// The kinds without a value.
+    pub const PLAIN: [Self; 8] = [
+        Self::DropAcknowledgement,
+        Self::DuplicateResponse,
+        Self::WrongId,
+        Self::Cut,
+        Self::BadDigest,
+        Self::UnknownKey,
+        Self::UnknownValue,
+        Self::Compress,
+    ];
+
     /// Returns the name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -65,7 +77,7 @@ impl FaultKind {
             Self::Slow(_) => "slow",
             Self::UnknownKey => "unknown-key",
             Self::UnknownValue => "unknown-value",
-            Self::Gzip => "gzip",
+            Self::Compress => "compress",
         }
     }
 }
@@ -128,7 +140,7 @@ impl<'r, 'm> Faults<'r, 'm> {
         }
     }
 
-    /// Returns the frame as it arrives. A frame with an error is delivered as it is.
+    /// Returns the frame as it arrives. A frame with an error is delivered unchanged.
     pub fn deliver(&mut self, piece: &Piece<'m>) -> Delivery {
         let mut delivery = Delivery {
             delay: Duration::ZERO,
@@ -190,7 +202,7 @@ impl<'r, 'm> Faults<'r, 'm> {
             }
             FaultKind::Cut => delivery.ends = true,
             FaultKind::BadDigest => draft.is_damaged = true,
-            FaultKind::Gzip => {
+            FaultKind::Compress => {
                 draft.packing = GZIP;
                 draft.is_changed = true;
             }
@@ -212,7 +224,7 @@ impl<'r, 'm> Faults<'r, 'm> {
         if draft.is_changed {
             match self.reflector.seal(draft.id, &draft.data, draft.packing) {
                 Ok(bytes) => delivery.bytes = bytes,
-                // A frame that is too long with its fault is delivered as it is.
+                // The fault makes the frame too long: it is delivered unchanged.
                 Err(_) => delivery.faults.clear(),
             }
         }
@@ -284,7 +296,7 @@ fn concerns(reflector: &Reflector<'_>, kind: FaultKind, frame: &Frame<'_>) -> bo
         }
         FaultKind::BadDigest => frame.field(HeaderRole::Digest).is_some(),
         FaultKind::UnknownKey | FaultKind::UnknownValue => frame.is_json(),
-        FaultKind::Gzip => {
+        FaultKind::Compress => {
             let mut encodings = reflector.model().frame.encodings.iter();
             encodings.any(|encoding| encoding.role == EncodingRole::Gzip)
         }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// The kinds, with their placeholders.
 const KINDS: &str = "delay=MS, drop-acknowledgement, duplicate-response, wrong-id, cut, bad-digest, slow=BYTES, \
-                     unknown-key, unknown-value, gzip";
+                     unknown-key, unknown-value, compress";
 
 /// The longest delay in milliseconds.
 const LONGEST: u64 = 3_600_000;
@@ -66,14 +66,7 @@ fn kind(text: &str) -> Result<FaultKind, FaultError> {
     let found = match (name, value) {
         ("delay", Some(value)) => value.parse().ok().map(|ms| FaultKind::Delay(delay(ms))),
         ("slow", Some(value)) => value.parse().ok().map(FaultKind::Slow),
-        ("drop-acknowledgement", None) => Some(FaultKind::DropAcknowledgement),
-        ("duplicate-response", None) => Some(FaultKind::DuplicateResponse),
-        ("wrong-id", None) => Some(FaultKind::WrongId),
-        ("cut", None) => Some(FaultKind::Cut),
-        ("bad-digest", None) => Some(FaultKind::BadDigest),
-        ("unknown-key", None) => Some(FaultKind::UnknownKey),
-        ("unknown-value", None) => Some(FaultKind::UnknownValue),
-        ("gzip", None) => Some(FaultKind::Gzip),
+        (_, None) => FaultKind::PLAIN.into_iter().find(|kind| kind.name() == name),
         _ => None,
     };
     found.ok_or_else(|| {

@@ -37,7 +37,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
     let name = part_name(group, "Operations");
     part_of(out, group, "Operations", &name, |out| {
         for call in group.commands.iter().chain(&group.reports) {
-            out.documented(&facts::method_docs(context, call.operation, |_| ()));
+            out.documented(&facts::constant_docs(context, call.operation));
             deprecated(out, call.operation);
             let (method, ty) = (call.method, type_of(call));
             let head = format!("public val {method}: {ty}");

@@ -73,13 +73,6 @@ class CheckCondition0333Request(rt.Message):
     """检查条件是否满足（0x0333，用途不详）：请求
     Check a condition (0x0333, purpose unknown): request
 
-    标题已丢失。请求只有公共字段，响应返回条件是否满足，是什么条件未知。
-
-    The heading is lost. The request holds the envelope alone and the response says whether a condition is met;
-    which one is unknown.
-
-    Code 0x0333. Unknown effect: treat it as a command that moves the robot. Since 2024-01-29.
-
     - Spec: `commands.check_condition_0333` in `spec/commands/dispatch.yaml`
     - 文档：`docs-site/reference/commands/check_condition_0333.md`
     - Docs: `docs-site/en/reference/commands/check_condition_0333.md`

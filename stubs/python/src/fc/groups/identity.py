@@ -31,12 +31,6 @@ class GetRobotSnRequest(rt.Message):
     """获取机器人序列号：请求
     Get the serial number: request
 
-    返回 15 位资产编码；2024 年 1 月的新版（第 50 节）还返回机器人型号。
-
-    Returns the 15-character asset number and, in the form of January 2024 (section 50), the robot's model.
-
-    Code 0x0A01. Only reads. Since 2023-05.
-
     - Spec: `commands.get_robot_sn` in `spec/commands/identity.yaml`
     - 文档：`docs-site/reference/commands/get_robot_sn.md`
     - Docs: `docs-site/en/reference/commands/get_robot_sn.md`
@@ -104,18 +98,9 @@ class GetFirmwareVersionsRequest(rt.Message):
     """获取固件版本：请求
     Get the firmware versions: request
 
-    主控在开机运行时与各模块通信，取得版本并暂存于内存变量，收到本指令时填充到 JSON
-    中回复。共三个模块：（上装）箱体固件版本、底盘固件版本、导航软件版本。
-
-    When it starts up, the main controller (主控) asks each module for its version and keeps it in memory; it fills
-    these into the JSON of the response. There are three modules: the firmware of the cabinet (upper body), the
-    firmware of the chassis (底盘), and the navigation software.
-
     待定：请求正文已丢失。从描述看不需要参数，应该只有公共字段。
 
     Open: The request is lost. Nothing in the description calls for a parameter; it is probably the bare envelope.
-
-    Code 0x0A0A. Only reads. Kept in `controller_memory`. Since 2023-08. Only in `adp` from 3.8.
 
     - Spec: `commands.get_firmware_versions` in `spec/commands/identity.yaml`
     - 文档：`docs-site/reference/commands/get_firmware_versions.md`

@@ -160,13 +160,6 @@ class GetMapImageRequest(rt.Message):
     """获取地图图像：请求
     Get the picture of a map: request
 
-    返回地图的 PNG 图像，以及分辨率、原点和两个阈值。图像以 base64 放在 JSON 中，响应可能很大。
-
-    Returns the map as a PNG, with its resolution, origin and two thresholds. The PNG is base64 inside the JSON, so
-    the response may be large.
-
-    Code 0x0111. Only reads, inferred. Since 2023-08-10.
-
     - Spec: `commands.get_map_image` in `spec/commands/map.yaml`
     - 文档：`docs-site/reference/commands/get_map_image.md`
     - Docs: `docs-site/en/reference/commands/get_map_image.md`
@@ -304,12 +297,6 @@ class ListMapsRequest(rt.Message):
     """获取地图列表：请求
     List the maps: request
 
-    返回地图列表，含各文件的路径、楼栋和楼层。
-
-    Returns the maps with the paths of their files, their building and their floor.
-
-    Code 0x0103. Only reads.
-
     - Spec: `commands.list_maps` in `spec/commands/map.yaml`
     - 文档：`docs-site/reference/commands/list_maps.md`
     - Docs: `docs-site/en/reference/commands/list_maps.md`
@@ -369,8 +356,6 @@ class GetMapInfoRequest(rt.Message):
 
     Open: No request is printed. It presumably names a map, but the key is unknown.
 
-    Code 0x010C. Only reads.
-
     - Spec: `commands.get_map_info` in `spec/commands/map.yaml`
     - 文档：`docs-site/reference/commands/get_map_info.md`
     - Docs: `docs-site/en/reference/commands/get_map_info.md`
@@ -402,12 +387,6 @@ class GetMapInfoResponse(rt.Message):
 class SaveMapRequest(rt.Message):
     """保存地图：请求
     Save the map: request
-
-    以指定的名称保存地图，并给出它的楼栋和楼层。
-
-    Saves the map under a name, with its building and floor.
-
-    Code 0x0109. Changes the configuration.
 
     - Spec: `commands.save_map` in `spec/commands/map.yaml`
     - 文档：`docs-site/reference/commands/save_map.md`
@@ -511,15 +490,6 @@ class DownloadMapsRequest(rt.Message):
     """下载地图：请求
     Download maps: request
 
-    从给定的地址下载地图。标题已丢失，用途由 `mapUrl` 和第 38 节“上传地图”推断。响应 1001
-    是否表示已经下载完，源文档没有说；进度看 `map_sync_progress`，也可以用 `get_map_sync_progress` 查询。
-
-    Downloads maps from the given addresses. The heading is lost; `mapUrl` and section 38, "upload maps", tell what
-    it does. The source does not say whether a response of 1001 means that the download is complete; follow
-    `map_sync_progress` or ask with `get_map_sync_progress`.
-
-    Code 0x0320. Changes the configuration, inferred.
-
     - Spec: `commands.download_maps` in `spec/commands/map.yaml`
     - 文档：`docs-site/reference/commands/download_maps.md`
     - Docs: `docs-site/en/reference/commands/download_maps.md`
@@ -574,16 +544,9 @@ class UploadMapsRequest(rt.Message):
     """上传地图：请求
     Upload maps: request
 
-    上传地图。上传哪些地图、传到哪里、机器人上是否有改动，源文档都没有说；进度看 `map_sync_progress`。
-
-    Uploads maps. The source does not say which maps, where to, or whether anything changes on the robot; follow
-    `map_sync_progress`.
-
     待定：请求正文已丢失：标签之后直接是第 39 节的内容。
 
     Open: The request is lost; its label runs straight into section 39.
-
-    Code 0x0321. Unknown effect: treat it as a command that moves the robot.
 
     - Spec: `commands.upload_maps` in `spec/commands/map.yaml`
     - 文档：`docs-site/reference/commands/upload_maps.md`
@@ -617,15 +580,9 @@ class GetMapSyncProgressRequest(rt.Message):
     """获取正在同步的地图进度：请求
     Get the progress of map synchronisation: request
 
-    查询正在下载、上传的地图的进度。`map_sync_progress` 会主动上报进度。
-
-    Returns the progress of the maps being downloaded or uploaded, which `map_sync_progress` also reports.
-
     待定：请求正文已丢失：标签之后直接是第 41 节的内容。
 
     Open: The request is lost; its label runs straight into section 41.
-
-    Code 0x0322. Only reads.
 
     - Spec: `commands.get_map_sync_progress` in `spec/commands/map.yaml`
     - 文档：`docs-site/reference/commands/get_map_sync_progress.md`

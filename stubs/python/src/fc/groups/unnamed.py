@@ -31,14 +31,6 @@ class Unnamed0309Request(rt.Message):
     """未命名指令（0x0309）：请求
     Unnamed command (0x0309): request
 
-    标题和响应都已丢失，请求只有公共字段。功能码紧接
-    0x0308（一键上报地图点位信息），可能与之有关。用途确认之前不要试发。
-
-    Its title and response are lost and its request is the bare envelope. The code follows 0x0308 (report the
-    stations of the map), so the two may be related. Do not try it out before its purpose is known.
-
-    Code 0x0309. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
-
     - Spec: `commands.unnamed_0309` in `spec/commands/unnamed.yaml`
     - 文档：`docs-site/reference/commands/unnamed_0309.md`
     - Docs: `docs-site/en/reference/commands/unnamed_0309.md`
@@ -70,13 +62,6 @@ class Unnamed0309Response(rt.Message):
 class Unnamed0460Request(rt.Message):
     """未命名指令（0x0460）：请求
     Unnamed command (0x0460): request
-
-    请求和响应都完整，只有公共字段，但标题已丢失，用途不详。用途确认之前不要试发。
-
-    Its request and response are complete and consist of the envelope alone, but the title is lost and its purpose
-    unknown. Do not try it out before that is known.
-
-    Code 0x0460. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
 
     - Spec: `commands.unnamed_0460` in `spec/commands/unnamed.yaml`
     - 文档：`docs-site/reference/commands/unnamed_0460.md`

@@ -17,13 +17,6 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * 获取物联网设备列表：请求
  * List the IoT devices of a type: request
  *
- * 按设备类型返回物联网设备的列表。标题已丢失，名称由请求和响应的字段推定。
- *
- * Returns the IoT devices of one type. The title is lost; the name is inferred from the keys of the request and the
- * response.
- *
- * Code 0x0A07. Only reads, inferred. Since 2023-10-13.
- *
  * - Spec: `commands.list_iot_devices` in `spec/commands/building.yaml`
  * - 文档：`docs-site/reference/commands/list_iot_devices.md`
  * - Docs: `docs-site/en/reference/commands/list_iot_devices.md`
@@ -86,13 +79,6 @@ export interface ListIotDevicesResponse {
 /**
  * 获取楼层信息：请求
  * Get the floors: request
- *
- * 返回楼层的数量和两个列表：楼层标签和楼层序号。标题已丢失，名称由响应的字段推定。
- *
- * Returns the number of floors and two lists, of floor labels and of floor numbers. The title is lost; the name is
- * inferred from the keys of the response.
- *
- * Code 0x03A1. Only reads, inferred. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.get_floors` in `spec/commands/building.yaml`
  * - 文档：`docs-site/reference/commands/get_floors.md`

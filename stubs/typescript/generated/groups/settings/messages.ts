@@ -17,13 +17,6 @@ import type { Answer, CallOptions, Context, Extra } from '../../../src/runtime.t
  * 读取或设置开关（0x0A08，用途不详）：请求
  * Read or set a switch (0x0A08, purpose unknown): request
  *
- * 一条指令兼作读写：`update` 为 `none` 时读开关状态，为 `on`、`off` 时设置；响应返回开关的状态。
- *
- * One command both reads and sets: `update` is `none` to read the switch, `on` or `off` to set it. The response returns
- * the state of the switch.
- *
- * Code 0x0A08. Unknown effect: treat it as a command that moves the robot. Since 2023-08. Only in `adp` from 3.8.
- *
  * - Spec: `commands.switch_0a08` in `spec/commands/settings.yaml`
  * - 文档：`docs-site/reference/commands/switch_0a08.md`
  * - Docs: `docs-site/en/reference/commands/switch_0a08.md`
@@ -108,10 +101,6 @@ export interface Switch0a08ResponseData {
  * 语音提醒的开关：请求
  * Voice reminder switch: request
  *
- * 语音提醒的开关，状态记录于机器人本体。
- *
- * The switch of the voice reminder; its state is stored on the robot.
- *
  * 已弃用：源文档划掉了整行标题，没有说明原因，也没有说机器人是否仍然支持。新代码不要使用。
  *
  * Deprecated: The source strikes out the whole heading. It gives no reason and does not say whether robots still
@@ -121,8 +110,6 @@ export interface Switch0a08ResponseData {
  *
  * Inferred: The request is lost. The response is the same as that of the switch in section 23, so the request is taken
  * to be the same too.
- *
- * Code 0x0A09. Changes the configuration. Kept in `robot`. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.set_voice_reminder` in `spec/commands/settings.yaml`
  * - 文档：`docs-site/reference/commands/set_voice_reminder.md`
@@ -206,16 +193,10 @@ export interface SetVoiceReminderResponseData {
  * 切换业务环境：请求
  * Switch the environment: request
  *
- * 切换 release 环境（生产）和 alpha 环境（测试）。
- *
- * Switches between the release environment (production) and the alpha environment (testing).
- *
  * 待定：请求正文已丢失，环境用哪个字段、什么值表示未知；填写的字段原样发出。
  *
  * Open: The request is lost. Which key names the environment, and with what value, is unknown; whatever is filled in is
  * sent as it is.
- *
- * Code 0x03A0. Changes the configuration. Since 2023-08. Only in `adp` from 3.8.
  *
  * - Spec: `commands.switch_environment` in `spec/commands/settings.yaml`
  * - 文档：`docs-site/reference/commands/switch_environment.md`

@@ -19,13 +19,6 @@ import type { StationType } from '../types/messages.ts'
  * 设置机器人待命时的位置：请求
  * Set the standby position: request
  *
- * 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
- *
- * Says at which point, of type charging or standby, the robot stands by. It is an array in case several standby points
- * can be set one day.
- *
- * Code 0x0311. Changes the configuration. Since 2024-01-02.
- *
  * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/set_standby_position.md`
  * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
@@ -63,8 +56,6 @@ export interface SetStandbyPositionResponse {
  * Open: The request is lost. Nothing in the title calls for a parameter, so it probably holds the envelope alone, as
  * that of 0x0314 does.
  *
- * Code 0x0312. Only reads. Since 2024-01-02.
- *
  * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/get_standby_position.md`
  * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
@@ -95,8 +86,6 @@ export interface GetStandbyPositionResponse {
 /**
  * 设置点位（0x0313，用途不详）：请求
  * Set points (0x0313, purpose unknown): request
- *
- * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/set_positions_0313.md`
@@ -133,13 +122,6 @@ export interface SetPositions0313Response {
 /**
  * 获取点位（0x0314，用途不详）：请求
  * Get points (0x0314, purpose unknown): request
- *
- * 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
- *
- * Its response has the structure of the request of `set_positions_0313`, so it may return the points set by that
- * command.
- *
- * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/get_positions_0314.md`

@@ -23,8 +23,6 @@ import type { StationType } from '../types/messages.ts'
  * Inferred: The request is lost. Its title says "by station ID", so it is taken to carry stationId under data, as the
  * response does.
  *
- * Code 0x0A03. Only reads. Since 2023-05.
- *
  * - Spec: `commands.get_station` in `spec/commands/station.yaml`
  * - 文档：`docs-site/reference/commands/get_station.md`
  * - Docs: `docs-site/en/reference/commands/get_station.md`
@@ -151,16 +149,9 @@ export interface GetStationResponseData {
  * 一键上报地图点位信息：请求
  * Report the stations of the map: request
  *
- * 按 type（0x01），这是 app 发给机器人的指令。点位信息由谁上报给谁、是哪张地图、怎样通知结果，源文档中都没有留下。
- *
- * Its type (0x01) makes it a command from the app to the robot. Who reports the stations to whom, of which map, and how
- * the result is told has not survived in the source.
- *
  * 待定：请求正文已丢失：标签之后直接是第 8 节的内容。
  *
  * Open: The request is lost; its label runs straight into section 8.
- *
- * Code 0x0308. Unknown effect: treat it as a command that moves the robot. Since 2023-05.
  *
  * - Spec: `commands.upload_map_stations` in `spec/commands/station.yaml`
  * - 文档：`docs-site/reference/commands/upload_map_stations.md`
@@ -191,12 +182,6 @@ export interface UploadMapStationsResponse {
 /**
  * 添加站点信息：请求
  * Add a station: request
- *
- * 请求中没有坐标，印出的响应中没有站点 ID。
- *
- * The request carries no coordinates and the printed response no station ID.
- *
- * Code 0x0302. Changes the configuration. Since 2023-07-17.
  *
  * - Spec: `commands.add_station` in `spec/commands/station.yaml`
  * - 文档：`docs-site/reference/commands/add_station.md`
@@ -276,8 +261,6 @@ export interface AddStationResponse {
  *
  * Inferred: The request is lost. It is taken to be that of rename_station without the new name.
  *
- * Code 0x0304. Changes the configuration. Since 2023-10-13.
- *
  * - Spec: `commands.delete_station` in `spec/commands/station.yaml`
  * - 文档：`docs-site/reference/commands/delete_station.md`
  * - Docs: `docs-site/en/reference/commands/delete_station.md`
@@ -329,8 +312,6 @@ export interface DeleteStationResponse {
 /**
  * 重命名站点：请求
  * Rename a station: request
- *
- * Code 0x0305. Changes the configuration, inferred. Since 2023-10-13.
  *
  * - Spec: `commands.rename_station` in `spec/commands/station.yaml`
  * - 文档：`docs-site/reference/commands/rename_station.md`

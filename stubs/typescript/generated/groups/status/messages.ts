@@ -17,12 +17,6 @@ import type { Acknowledgement, Answer, Audience, CallOptions, Context, Extra, Re
  * 获取异常列表：请求
  * List the faults: request
  *
- * 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
- *
- * Returns a list of faults, each with its code, level, source, possible cause and guidance.
- *
- * Code 0x0A0C. Only reads, inferred.
- *
  * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
  * - 文档：`docs-site/reference/commands/list_faults.md`
  * - Docs: `docs-site/en/reference/commands/list_faults.md`
@@ -54,13 +48,6 @@ export interface ListFaultsResponse {
 /**
  * 获取自检结果：请求
  * Get the result of the self-check: request
- *
- * 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
- *
- * Tells whether each module of the robot is working normally. After power-on all items are checked in parallel; the
- * timeout is 2 minutes by default.
- *
- * Code 0x0A0D. Only reads, inferred.
  *
  * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
  * - 文档：`docs-site/reference/commands/get_self_check.md`

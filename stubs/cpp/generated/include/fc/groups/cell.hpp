@@ -204,13 +204,6 @@ std::ostream& operator<<(std::ostream& out, const GetCellConfigResponse& message
 /// 获取机器人格口门配置：请求
 /// Get the compartment configuration: request
 ///
-/// 返回格口的数量，以及每个格口的编号、大小和对应的门；位置和锁号不一定有。应是当前生效的配置，源文档没有明说。
-///
-/// Returns the number of compartments and, for each, its number, size and doors; location and lock
-/// may be missing. This is presumably the active configuration; the source does not say so.
-///
-/// Code 0x0A02. Only reads.
-///
 /// - Spec: `commands.get_cell_config` in `spec/commands/cell.yaml`
 /// - 文档：`docs-site/reference/commands/get_cell_config.md`
 /// - Docs: `docs-site/en/reference/commands/get_cell_config.md`
@@ -344,23 +337,6 @@ std::ostream& operator<<(std::ostream& out, const SetCellConfigResponse& message
 
 /// 设置机器人格口配置：请求
 /// Set the compartment configuration: request
-///
-/// 有两种请求，靠 `data` 中的字段区分：
-///
-/// - 新版（2023 年 11 月更新）：各种配置已写在底盘本地的配置文件中（见分格表），app
-///   只设置当前生效的是哪一种。
-/// - 旧版：app
-///   下发完整的格口门配置，**覆盖**写到机器人的配置文件中。可选值是旧版表中的四种，应与分格表一致，只是没有位置和类型序号。
-///
-/// There are two requests, told apart by the keys of `data`:
-///
-/// - New form (updated November 2023): the layouts are stored in a configuration file on the
-///   chassis (see the table of layouts), and the app selects the active one.
-/// - Old form: the app sends a whole layout, which **overwrites** the configuration file on the
-///   robot. Its values are the four layouts of the old table, which should be those of the table of
-///   layouts without location and index.
-///
-/// Code 0x0A0B. Changes the configuration.
 ///
 /// - Spec: `commands.set_cell_config` in `spec/commands/cell.yaml`
 /// - 文档：`docs-site/reference/commands/set_cell_config.md`

@@ -40,12 +40,6 @@ std::ostream& operator<<(std::ostream& out, const GetLaserScanResponse& message)
 /// 获取激光数据：请求
 /// Get the lidar data: request
 ///
-/// 获取激光数据（第 21 节），用于显示激光雷达点云（第 30 节）。
-///
-/// Gets the laser data (section 21), for displaying the lidar point cloud (section 30).
-///
-/// Code 0x0001. Only reads. Since 2023-08-10.
-///
 /// - Spec: `commands.get_laser_scan` in `spec/commands/laser.yaml`
 /// - 文档：`docs-site/reference/commands/get_laser_scan.md`
 /// - Docs: `docs-site/en/reference/commands/get_laser_scan.md`

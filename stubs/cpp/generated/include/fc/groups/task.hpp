@@ -47,21 +47,12 @@ std::ostream& operator<<(std::ostream& out, const CreateTaskResponse& message);
 /// 创建巡游/送物任务：请求
 /// Create a patrol or delivery task: request
 ///
-/// 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令
-/// `execute_task`，查询用 `get_task_status`、`get_task_history`。
-///
-/// There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and
-/// ID. Executing it is a command of its own, `execute_task`; query it with `get_task_status` and
-/// `get_task_history`.
-///
 /// 待定：请求正文已丢失。从标题和响应的注释看应包含任务类型（1 巡游，2
 /// 送物），但字段名和结构未知；填写的字段原样发出。
 ///
 /// Open: The request is lost. Judging by the title and a comment in the response, it should hold
 /// the type of task (1 patrol, 2 delivery), but its keys and structure are unknown; whatever is
 /// filled in is sent as it is.
-///
-/// Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
 ///
 /// - Spec: `commands.create_task` in `spec/commands/task.yaml`
 /// - 文档：`docs-site/reference/commands/create_task.md`
@@ -152,8 +143,6 @@ std::ostream& operator<<(std::ostream& out, const GetTaskStatusResponse& message
 /// 待定：请求正文已丢失：标签之后直接是第 14 节的内容。
 ///
 /// Open: The request is lost; its label runs straight into section 14.
-///
-/// Code 0x0353. Only reads. Since 2023-05.
 ///
 /// - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
 /// - 文档：`docs-site/reference/commands/get_task_status.md`

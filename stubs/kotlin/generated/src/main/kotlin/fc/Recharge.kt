@@ -39,18 +39,7 @@ public interface RechargeOperations {
      * 发起一键回充
      * Start returning to dock
      *
-     * 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用 `recharge_progress`
-     * 上报一次，也可以用 `get_recharge_status` 查询。响应 1001 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
-     *
-     * The robot drives to its charging dock, docks and starts charging. It sends `recharge_progress` on every change of
-     * state; `get_recharge_status` returns the current one. The source does not say whether a response of 1001 means
-     * that the robot has set off, so rely on these two.
-     *
      * Code 0x0A04. Moves the robot. Since 2023-05.
-     *
-     * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
-     * - 文档：`docs-site/reference/commands/start_recharge.md`
-     * - Docs: `docs-site/en/reference/commands/start_recharge.md`
      */
     public val startRecharge: Command<StartRechargeRequest, StartRechargeResponse> get() = Companion.startRecharge
 
@@ -58,16 +47,7 @@ public interface RechargeOperations {
      * 取消一键回充
      * Cancel returning to dock
      *
-     * 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
-     *
-     * The robot stops and the charging state becomes idle. If the robot is on the dock, it first backs off and then
-     * stops.
-     *
      * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
-     *
-     * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
-     * - 文档：`docs-site/reference/commands/cancel_recharge.md`
-     * - Docs: `docs-site/en/reference/commands/cancel_recharge.md`
      */
     public val cancelRecharge: Command<CancelRechargeRequest, CancelRechargeResponse> get() = Companion.cancelRecharge
 
@@ -75,16 +55,7 @@ public interface RechargeOperations {
      * 获取回充状态
      * Get the charging state
      *
-     * 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
-     *
-     * Returns the charging state in the same two fields as `recharge_progress`. Useful for an app that has just
-     * connected.
-     *
      * Code 0x0A06. Only reads, inferred. Since 2023-05.
-     *
-     * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
-     * - 文档：`docs-site/reference/commands/get_recharge_status.md`
-     * - Docs: `docs-site/en/reference/commands/get_recharge_status.md`
      */
     public val getRechargeStatus: Command<GetRechargeStatusRequest, GetRechargeStatusResponse>
         get() = Companion.getRechargeStatus
@@ -93,24 +64,7 @@ public interface RechargeOperations {
      * 主动上报回充过程和结果
      * Progress and result of charging
      *
-     * 机器人可能重试并因此自动切换状态，同一状态会重复上报，接收方要能处理。
-     *
-     * - 无异常：`errorStatus` 为 0，`rechargeStatus` 的正常顺序是 0 → 4 → 1 → 2 → 3。
-     * - 异常：`errorStatus` 为 1，`rechargeStatus`
-     *   为前一个状态，可不关注。此后机器人不再主动执行动作，收到指令才开始动作（例如开始回充）。
-     *
-     * The robot may retry and so change state by itself; the same state can then be reported again, and the receiver
-     * has to cope.
-     *
-     * - No fault: `errorStatus` is 0 and `rechargeStatus` normally runs 0 → 4 → 1 → 2 → 3.
-     * - Fault: `errorStatus` is 1 and `rechargeStatus` holds the previous state, which can be ignored. From then on the
-     *   robot acts only on a command, such as starting to return to dock.
-     *
      * Code 0x0B01. Sent at each change of `data.rechargeStatus`. Since 2023-05.
-     *
-     * - Spec: `reports.recharge_progress` in `spec/commands/recharge.yaml`
-     * - 文档：`docs-site/reference/reports/recharge_progress.md`
-     * - Docs: `docs-site/en/reference/reports/recharge_progress.md`
      */
     public val rechargeProgress: Report<RechargeProgress> get() = Companion.rechargeProgress
 
@@ -526,19 +480,10 @@ public interface RechargeReporter {
  * 发起一键回充：请求
  * Start returning to dock: request
  *
- * 一键回充：机器人导航到充电桩前，对桩，然后开始充电。状态每切换一次，机器人用 `recharge_progress` 上报一次，也可以用
- * `get_recharge_status` 查询。响应 1001 是否意味着已经开始回充，源文档没有说，以这两个接口为准。
- *
- * The robot drives to its charging dock, docks and starts charging. It sends `recharge_progress` on every change of
- * state; `get_recharge_status` returns the current one. The source does not say whether a response of 1001 means that
- * the robot has set off, so rely on these two.
- *
  * 待定：请求正文已丢失。标题看不出需要参数，推测只有公共字段；附加的字段会原样发出。
  *
  * Open: The request is lost. Nothing in the title calls for a parameter, so it probably holds the envelope alone; any
  * key you add is sent unchanged.
- *
- * Code 0x0A04. Moves the robot. Since 2023-05.
  *
  * - Spec: `commands.start_recharge` in `spec/commands/recharge.yaml`
  * - 文档：`docs-site/reference/commands/start_recharge.md`
@@ -606,15 +551,9 @@ public class StartRechargeResponse private constructor(content: Content) : Messa
  * 取消一键回充：请求
  * Cancel returning to dock: request
  *
- * 停止运动，回充状态进入“空闲”。如果在充电桩上，先执行退桩，再停止运动。
- *
- * The robot stops and the charging state becomes idle. If the robot is on the dock, it first backs off and then stops.
- *
  * 待定：请求正文已丢失。推测与 `get_recharge_status` 一样只有公共字段。
  *
  * Open: The request is lost. Like that of `get_recharge_status`, it probably holds the envelope alone.
- *
- * Code 0x0A05. Moves the robot. Accepted in any state. Since 2023-05.
  *
  * - Spec: `commands.cancel_recharge` in `spec/commands/recharge.yaml`
  * - 文档：`docs-site/reference/commands/cancel_recharge.md`
@@ -685,12 +624,6 @@ public class CancelRechargeResponse private constructor(content: Content) : Mess
 /**
  * 获取回充状态：请求
  * Get the charging state: request
- *
- * 返回回充状态，字段与 `recharge_progress` 上报的相同。app 刚连上时可以用它补齐状态。
- *
- * Returns the charging state in the same two fields as `recharge_progress`. Useful for an app that has just connected.
- *
- * Code 0x0A06. Only reads, inferred. Since 2023-05.
  *
  * - Spec: `commands.get_recharge_status` in `spec/commands/recharge.yaml`
  * - 文档：`docs-site/reference/commands/get_recharge_status.md`

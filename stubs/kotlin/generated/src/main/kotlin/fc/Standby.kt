@@ -26,16 +26,7 @@ public interface StandbyOperations {
      * 设置机器人待命时的位置
      * Set the standby position
      *
-     * 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
-     *
-     * Says at which point, of type charging or standby, the robot stands by. It is an array in case several standby
-     * points can be set one day.
-     *
      * Code 0x0311. Changes the configuration. Since 2024-01-02.
-     *
-     * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
-     * - 文档：`docs-site/reference/commands/set_standby_position.md`
-     * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
      */
     public val setStandbyPosition: Command<SetStandbyPositionRequest, SetStandbyPositionResponse>
         get() = Companion.setStandbyPosition
@@ -45,10 +36,6 @@ public interface StandbyOperations {
      * Get the standby position
      *
      * Code 0x0312. Only reads. Since 2024-01-02.
-     *
-     * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
-     * - 文档：`docs-site/reference/commands/get_standby_position.md`
-     * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
      */
     public val getStandbyPosition: Command<GetStandbyPositionRequest, GetStandbyPositionResponse>
         get() = Companion.getStandbyPosition
@@ -58,10 +45,6 @@ public interface StandbyOperations {
      * Set points (0x0313, purpose unknown)
      *
      * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
-     *
-     * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
-     * - 文档：`docs-site/reference/commands/set_positions_0313.md`
-     * - Docs: `docs-site/en/reference/commands/set_positions_0313.md`
      */
     public val setPositions0313: Command<SetPositions0313Request, SetPositions0313Response>
         get() = Companion.setPositions0313
@@ -70,16 +53,7 @@ public interface StandbyOperations {
      * 获取点位（0x0314，用途不详）
      * Get points (0x0314, purpose unknown)
      *
-     * 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
-     *
-     * Its response has the structure of the request of `set_positions_0313`, so it may return the points set by that
-     * command.
-     *
      * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
-     *
-     * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
-     * - 文档：`docs-site/reference/commands/get_positions_0314.md`
-     * - Docs: `docs-site/en/reference/commands/get_positions_0314.md`
      */
     public val getPositions0314: Command<GetPositions0314Request, GetPositions0314Response>
         get() = Companion.getPositions0314
@@ -461,13 +435,6 @@ internal fun Service.onStandby(robot: StandbyAsyncHandlers): Service = apply {
  * 设置机器人待命时的位置：请求
  * Set the standby position: request
  *
- * 指定机器人在哪个点位待命，类型为充电点或待命点。使用数组，以防以后扩展为设置多个待命点。
- *
- * Says at which point, of type charging or standby, the robot stands by. It is an array in case several standby points
- * can be set one day.
- *
- * Code 0x0311. Changes the configuration. Since 2024-01-02.
- *
  * - Spec: `commands.set_standby_position` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/set_standby_position.md`
  * - Docs: `docs-site/en/reference/commands/set_standby_position.md`
@@ -553,8 +520,6 @@ public class SetStandbyPositionResponse private constructor(content: Content) : 
  * Open: The request is lost. Nothing in the title calls for a parameter, so it probably holds the envelope alone, as
  * that of 0x0314 does.
  *
- * Code 0x0312. Only reads. Since 2024-01-02.
- *
  * - Spec: `commands.get_standby_position` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/get_standby_position.md`
  * - Docs: `docs-site/en/reference/commands/get_standby_position.md`
@@ -625,8 +590,6 @@ public class GetStandbyPositionResponse private constructor(content: Content) : 
 /**
  * 设置点位（0x0313，用途不详）：请求
  * Set points (0x0313, purpose unknown): request
- *
- * Code 0x0313. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.set_positions_0313` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/set_positions_0313.md`
@@ -711,13 +674,6 @@ public class SetPositions0313Response private constructor(content: Content) : Me
 /**
  * 获取点位（0x0314，用途不详）：请求
  * Get points (0x0314, purpose unknown): request
- *
- * 响应的结构与 `set_positions_0313` 的请求相同，可能是取回由它设置的点位。
- *
- * Its response has the structure of the request of `set_positions_0313`, so it may return the points set by that
- * command.
- *
- * Code 0x0314. Unknown effect: treat it as a command that moves the robot. Since 2024-01-02.
  *
  * - Spec: `commands.get_positions_0314` in `spec/commands/standby.yaml`
  * - 文档：`docs-site/reference/commands/get_positions_0314.md`

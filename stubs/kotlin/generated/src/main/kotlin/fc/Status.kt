@@ -39,15 +39,7 @@ public interface StatusOperations {
      * 获取异常列表
      * List the faults
      *
-     * 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
-     *
-     * Returns a list of faults, each with its code, level, source, possible cause and guidance.
-     *
      * Code 0x0A0C. Only reads, inferred.
-     *
-     * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
-     * - 文档：`docs-site/reference/commands/list_faults.md`
-     * - Docs: `docs-site/en/reference/commands/list_faults.md`
      */
     public val listFaults: Command<ListFaultsRequest, ListFaultsResponse> get() = Companion.listFaults
 
@@ -55,16 +47,7 @@ public interface StatusOperations {
      * 获取自检结果
      * Get the result of the self-check
      *
-     * 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
-     *
-     * Tells whether each module of the robot is working normally. After power-on all items are checked in parallel; the
-     * timeout is 2 minutes by default.
-     *
      * Code 0x0A0D. Only reads, inferred.
-     *
-     * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
-     * - 文档：`docs-site/reference/commands/get_self_check.md`
-     * - Docs: `docs-site/en/reference/commands/get_self_check.md`
      */
     public val getSelfCheck: Command<GetSelfCheckRequest, GetSelfCheckResponse> get() = Companion.getSelfCheck
 
@@ -72,15 +55,7 @@ public interface StatusOperations {
      * 主动上报机器人状态
      * Status of the robot
      *
-     * 上报机器人的状态、子状态和故障代码。何时上报（状态变化时还是定时），源文档没有说。
-     *
-     * Reports the robot's state, sub-state and fault code. The source does not say when, on a change or at intervals.
-     *
      * Code 0x0342. Since 2023-05.
-     *
-     * - Spec: `reports.robot_status` in `spec/commands/status.yaml`
-     * - 文档：`docs-site/reference/reports/robot_status.md`
-     * - Docs: `docs-site/en/reference/reports/robot_status.md`
      */
     public val robotStatus: Report<RobotStatus> get() = Companion.robotStatus
 
@@ -363,12 +338,6 @@ public interface StatusReporter {
  * 获取异常列表：请求
  * List the faults: request
  *
- * 返回异常列表，每条有异常码、等级、来源、可能原因和解决指引。
- *
- * Returns a list of faults, each with its code, level, source, possible cause and guidance.
- *
- * Code 0x0A0C. Only reads, inferred.
- *
  * - Spec: `commands.list_faults` in `spec/commands/status.yaml`
  * - 文档：`docs-site/reference/commands/list_faults.md`
  * - Docs: `docs-site/en/reference/commands/list_faults.md`
@@ -448,13 +417,6 @@ public class ListFaultsResponse private constructor(content: Content) : Message(
 /**
  * 获取自检结果：请求
  * Get the result of the self-check: request
- *
- * 检查机器人本体各功能模块是否进入正常工作状态。开机后并行检查各项目，默认 2 分钟超时。
- *
- * Tells whether each module of the robot is working normally. After power-on all items are checked in parallel; the
- * timeout is 2 minutes by default.
- *
- * Code 0x0A0D. Only reads, inferred.
  *
  * - Spec: `commands.get_self_check` in `spec/commands/status.yaml`
  * - 文档：`docs-site/reference/commands/get_self_check.md`

@@ -34,17 +34,7 @@ public interface TaskOperations {
      * 创建巡游/送物任务
      * Create a patrol or delivery task
      *
-     * 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令 `execute_task`，查询用
-     * `get_task_status`、`get_task_history`。
-     *
-     * There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and ID. Executing it
-     * is a command of its own, `execute_task`; query it with `get_task_status` and `get_task_history`.
-     *
      * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
-     *
-     * - Spec: `commands.create_task` in `spec/commands/task.yaml`
-     * - 文档：`docs-site/reference/commands/create_task.md`
-     * - Docs: `docs-site/en/reference/commands/create_task.md`
      */
     public val createTask: Command<CreateTaskRequest, CreateTaskResponse> get() = Companion.createTask
 
@@ -53,10 +43,6 @@ public interface TaskOperations {
      * Get a task's status
      *
      * Code 0x0353. Only reads. Since 2023-05.
-     *
-     * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
-     * - 文档：`docs-site/reference/commands/get_task_status.md`
-     * - Docs: `docs-site/en/reference/commands/get_task_status.md`
      */
     public val getTaskStatus: Command<GetTaskStatusRequest, GetTaskStatusResponse> get() = Companion.getTaskStatus
 
@@ -64,16 +50,7 @@ public interface TaskOperations {
      * 遇障语音播报
      * Voice announcement of an obstacle
      *
-     * 标题是“遇障语音播报”：应是机器人遇到障碍时上报，以便语音播报。由 app 还是机器人播报、播报什么，源文档没有说明。
-     *
-     * Judging by the title, the robot presumably sends this when it meets an obstacle, so that a voice announcement is
-     * made. The source does not say whether the app or the robot makes it, nor what it says.
-     *
      * Code 0x0341. Since 2023-05.
-     *
-     * - Spec: `reports.obstacle_announcement` in `spec/commands/task.yaml`
-     * - 文档：`docs-site/reference/reports/obstacle_announcement.md`
-     * - Docs: `docs-site/en/reference/reports/obstacle_announcement.md`
      */
     public val obstacleAnnouncement: Report<ObstacleAnnouncement> get() = Companion.obstacleAnnouncement
 
@@ -81,15 +58,7 @@ public interface TaskOperations {
      * 到达目标点通知上报
      * Target reached
      *
-     * 机器人到达目标点时上报。
-     *
-     * Sent when the robot has reached its target.
-     *
      * Code 0x0340, inferred. Since 2023-05.
-     *
-     * - Spec: `reports.target_reached` in `spec/commands/task.yaml`
-     * - 文档：`docs-site/reference/reports/target_reached.md`
-     * - Docs: `docs-site/en/reference/reports/target_reached.md`
      */
     public val targetReached: Report<TargetReached> get() = Companion.targetReached
 
@@ -97,16 +66,7 @@ public interface TaskOperations {
      * 上报机器人任务进度
      * Task progress
      *
-     * 上报机器人任务的进度：一般进度，以及过闸机、过门和乘电梯的各个阶段。
-     *
-     * Reports the progress of the robot's task: general progress, and the stages of passing gates and doors and of
-     * taking an elevator.
-     *
      * Code 0x0345. Since 2024-01-29.
-     *
-     * - Spec: `reports.task_progress` in `spec/commands/task.yaml`
-     * - 文档：`docs-site/reference/reports/task_progress.md`
-     * - Docs: `docs-site/en/reference/reports/task_progress.md`
      */
     public val taskProgress: Report<TaskProgress> get() = Companion.taskProgress
 
@@ -463,18 +423,10 @@ public interface TaskReporter {
  * 创建巡游/送物任务：请求
  * Create a patrol or delivery task: request
  *
- * 任务分两类：1 巡游，2 送物。响应返回任务名称和任务 ID；执行任务是另一条指令 `execute_task`，查询用
- * `get_task_status`、`get_task_history`。
- *
- * There are two types of task: 1 patrol and 2 delivery. The response returns the task's name and ID. Executing it is a
- * command of its own, `execute_task`; query it with `get_task_status` and `get_task_history`.
- *
  * 待定：请求正文已丢失。从标题和响应的注释看应包含任务类型（1 巡游，2 送物），但字段名和结构未知；填写的字段原样发出。
  *
  * Open: The request is lost. Judging by the title and a comment in the response, it should hold the type of task (1
  * patrol, 2 delivery), but its keys and structure are unknown; whatever is filled in is sent as it is.
- *
- * Code 0x0350. Unknown effect: treat it as a command that moves the robot. Since 2023-10.
  *
  * - Spec: `commands.create_task` in `spec/commands/task.yaml`
  * - 文档：`docs-site/reference/commands/create_task.md`
@@ -679,8 +631,6 @@ public class ExecuteTaskResponse private constructor(content: Content) : Message
  * 待定：请求正文已丢失：标签之后直接是第 14 节的内容。
  *
  * Open: The request is lost; its label runs straight into section 14.
- *
- * Code 0x0353. Only reads. Since 2023-05.
  *
  * - Spec: `commands.get_task_status` in `spec/commands/task.yaml`
  * - 文档：`docs-site/reference/commands/get_task_status.md`
