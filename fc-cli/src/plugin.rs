@@ -89,14 +89,16 @@ fn start(plugin: &Plugin, question: String, root: &Path) -> io::Result<Running> 
         .stdout(Stdio::piped());
     let (mut child, group) = Group::spawn(&mut command)?;
     let (sender, events) = channel();
-    let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
+    let (stdin, mut stdout) = (child.stdin.take(), child.stdout.take());
     // Writing and reading at once: the program may answer before it has read everything. A program that does not read
     // closes its input. No thread is joined: a grandchild may hold its end of a pipe.
     thread::spawn(move || stdin.map(|mut stdin| stdin.write_all(question.as_bytes())));
     let most = plugin.output_bytes;
     let answered: Sender<Event> = sender.clone();
     thread::spawn(move || {
-        let answer = stdout.map_or(Ok(Some(Vec::new())), |stdout| bounded(stdout, most));
+        let answer = stdout.as_mut();
+        let answer = answer.map_or(Ok(Some(Vec::new())), |stdout| bounded(stdout, most));
+        // The pipe is open until the answer is sent. Otherwise, SIGPIPE could end the program first.
         answered.send(Event::Answer(answer))
     });
     thread::spawn(move || sender.send(Event::End(child.wait())));

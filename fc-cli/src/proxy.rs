@@ -125,7 +125,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         print::result(&endpoint::line(addresses))?;
         if !settings.faults.is_empty() && options.seed.is_none() {
             let seed = settings.seed;
-            print::done(&said!("种子 {seed}\n", "seed {seed}\n"))?;
+            print::result(&match options.format {
+                Shown::Text => said!("种子 {seed}\n", "seed {seed}\n"),
+                Shown::Json => json!({ "seed": seed }).to_string() + "\n",
+            })?;
         }
         let show = &mut |event: Event<'_, '_>| show(model, options.format, &event);
         serve(&reflector, &settings, listeners, show, interrupt.next()).await?;

@@ -18,9 +18,8 @@ use std::io;
 use std::num::NonZeroU32;
 use std::pin::pin;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
-use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, split};
 use tokio::net::TcpStream;
-use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::time::{sleep, timeout};
 
 /// Room for one read, in bytes.
@@ -75,14 +74,7 @@ pub async fn serve<'m>(
     end: impl Future<Output = ()>,
 ) -> io::Result<()> {
     let most = facts::limits(reflector.model()).connections;
-    let proxy = &Proxy {
-        reflector,
-        settings,
-        watch: RefCell::new(Watch {
-            decoder: Decoder::new(reflector),
-            sink,
-        }),
-    };
+    let proxy = &Proxy::new(reflector, settings, sink);
     let mut links = FuturesUnordered::new();
     let mut end = pin!(end);
     let mut count = 0;
@@ -104,6 +96,26 @@ pub async fn serve<'m>(
             Some(ended) = links.next(), if !links.is_empty() => ended?,
         }
     }
+}
+
+/// Forwards one connection between streams of any kind until it ends. `number` tells connections apart, which then have
+/// different chances of faults.
+///
+/// # Errors
+/// The error of `sink`.
+pub async fn forward<'m, A, R>(
+    reflector: &Reflector<'m>,
+    settings: &Settings,
+    (flow, number): (Flow, u64),
+    (app, robot): (A, R),
+    sink: &mut Sink<'_, 'm>,
+) -> io::Result<()>
+where
+    A: AsyncRead + AsyncWrite,
+    R: AsyncRead + AsyncWrite,
+{
+    let proxy = Proxy::new(reflector, settings, sink);
+    proxy.forward((flow, number), app, robot).await
 }
 
 /// The parts of a proxy that its connections share.
@@ -147,8 +159,23 @@ enum End {
     Broken,
 }
 
-impl<'m> Proxy<'_, 'm, '_, '_> {
-    /// Forwards a connection in both directions until it ends.
+impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
+    fn new(
+        reflector: &'r Reflector<'m>,
+        settings: &'r Settings,
+        sink: &'s mut Sink<'o, 'm>,
+    ) -> Self {
+        Self {
+            reflector,
+            settings,
+            watch: RefCell::new(Watch {
+                decoder: Decoder::new(reflector),
+                sink,
+            }),
+        }
+    }
+
+    /// Connects to the robot and forwards a connection until it ends.
     async fn link(&self, app: TcpStream, robot: &str, number: u64) -> io::Result<()> {
         let wait = facts::call_timeout(self.reflector.model());
         let connected = timeout(wait, TcpStream::connect(robot)).await;
@@ -166,9 +193,16 @@ impl<'m> Proxy<'_, 'm, '_, '_> {
         let (Ok(from), Ok(to)) = (app.peer_addr(), robot.peer_addr()) else {
             return Ok(());
         };
-        let flow = Flow { from, to };
-        let (app_reads, app_writes) = app.into_split();
-        let (robot_reads, robot_writes) = robot.into_split();
+        self.forward((Flow { from, to }, number), app, robot).await
+    }
+
+    async fn forward<A, R>(&self, (flow, number): (Flow, u64), app: A, robot: R) -> io::Result<()>
+    where
+        A: AsyncRead + AsyncWrite,
+        R: AsyncRead + AsyncWrite,
+    {
+        let (app_reads, app_writes) = split(app);
+        let (robot_reads, robot_writes) = split(robot);
         let mut there = pin!(self.relay(flow, app_reads, robot_writes, 2 * number));
         let mut back = pin!(self.relay(flow.reversed(), robot_reads, app_writes, 2 * number + 1));
         let (mut there_ended, mut back_ended) = (false, false);
@@ -196,13 +230,13 @@ impl<'m> Proxy<'_, 'm, '_, '_> {
     async fn relay(
         &self,
         flow: Flow,
-        mut reader: OwnedReadHalf,
-        mut writer: OwnedWriteHalf,
+        mut reader: impl AsyncRead + Unpin,
+        mut writer: impl AsyncWrite + Unpin,
         stream: u64,
     ) -> io::Result<End> {
         let Settings { faults, seed, .. } = self.settings;
         let faults = Faults::new(self.reflector, faults, *seed, stream);
-        let mut faulty = (!self.settings.faults.is_empty()).then(|| Faulty {
+        let mut link = (!self.settings.faults.is_empty()).then(|| FaultyLink {
             faults,
             frames: FrameStream::new(),
         });
@@ -213,8 +247,8 @@ impl<'m> Proxy<'_, 'm, '_, '_> {
             };
             let bytes = buffer.get(..count).unwrap_or_default();
             self.watch.borrow_mut().bytes(flow, bytes)?;
-            let written = match &mut faulty {
-                Some(faulty) => self.deliver(faulty, flow, bytes, &mut writer).await?,
+            let written = match &mut link {
+                Some(link) => self.deliver(link, flow, bytes, &mut writer).await?,
                 None => writer.write_all(bytes).await.is_ok(),
             };
             if !written {
@@ -232,23 +266,23 @@ impl<'m> Proxy<'_, 'm, '_, '_> {
     /// ends here.
     async fn deliver(
         &self,
-        faulty: &mut Faulty<'_, 'm>,
+        link: &mut FaultyLink<'_, 'm>,
         flow: Flow,
         bytes: &[u8],
-        writer: &mut OwnedWriteHalf,
+        writer: &mut (impl AsyncWrite + Unpin),
     ) -> io::Result<bool> {
-        faulty.frames.room().extend_from_slice(bytes);
+        link.frames.room().extend_from_slice(bytes);
         loop {
-            let piece = match faulty.frames.next(self.reflector) {
+            let piece = match link.frames.next(self.reflector) {
                 Ok(Some(piece)) => piece,
                 Ok(None) if !bytes.is_empty() => return Ok(true),
                 // The end of the bytes, or bytes that are no frame.
                 Ok(None) | Err(_) => {
-                    let rest = std::mem::take(&mut faulty.frames);
+                    let rest = std::mem::take(&mut link.frames);
                     return Ok(writer.write_all(rest.rest()).await.is_ok());
                 }
             };
-            let delivery = faulty.faults.deliver(&piece);
+            let delivery = link.faults.deliver(&piece);
             if let (Ok(frame), false) = (&piece.frame, delivery.faults.is_empty()) {
                 (self.watch.borrow_mut().sink)(Event::Faults {
                     flow,
@@ -264,13 +298,13 @@ impl<'m> Proxy<'_, 'm, '_, '_> {
 }
 
 /// The frames of a direction, with their faults.
-struct Faulty<'r, 'm> {
+struct FaultyLink<'r, 'm> {
     faults: Faults<'r, 'm>,
     frames: FrameStream,
 }
 
 /// Writes a frame as it arrives.
-async fn write(delivery: &Delivery, writer: &mut OwnedWriteHalf) -> io::Result<()> {
+async fn write(delivery: &Delivery, writer: &mut (impl AsyncWrite + Unpin)) -> io::Result<()> {
     sleep(delivery.delay).await;
     let Some(rate) = delivery.rate else {
         return writer.write_all(&delivery.bytes).await;

@@ -1,7 +1,7 @@
 //! `fcproto call` against `fcproto mock`.
 
 use crate::support::Project;
-use crate::support::mock::Mock;
+use crate::support::robot::Robot;
 use serde_json::{Value, json};
 
 /// Arguments, exit status, and texts in the output or in the errors.
@@ -85,7 +85,7 @@ const CASES: &[Case] = &[
 #[test]
 fn each_call_has_its_status_and_its_output() {
     let project = Project::new();
-    let mock = Mock::start(&project, &[]);
+    let mock = Robot::mock(&project, &[]);
     for (args, status, texts) in CASES {
         let run = mock.call(&project, args);
         let shown = format!("{}{}", run.stdout, run.stderr);
@@ -125,7 +125,7 @@ fn a_value_out_of_range_is_not_sent() {
 #[test]
 fn json_output_has_a_line_per_message() {
     let project = Project::new();
-    let mock = Mock::start(&project, &[]);
+    let mock = Robot::mock(&project, &[]);
     let run = mock.call(
         &project,
         &["get_level", "--format", "json", "--repeat", "3"],
@@ -146,9 +146,9 @@ fn json_output_has_a_line_per_message() {
 #[test]
 fn a_robot_that_is_not_there_gives_status_4() {
     let project = Project::new();
-    let mock = Mock::start(&project, &[]);
+    let mock = Robot::mock(&project, &[]);
     let address = mock.commands.clone();
-    assert_eq!(mock.stop("-TERM"), Some(0));
+    assert_eq!(mock.stop("-TERM").0, Some(0));
     let run = project
         .fc(&["call", "get_level", "--to", &address])
         .expect(4);
@@ -170,7 +170,7 @@ fn a_robot_that_does_not_answer_gives_status_4() {
 #[test]
 fn a_process_is_followed_to_its_end() {
     let project = Project::new();
-    let mock = Mock::start(&project, &["--pace", "5"]);
+    let mock = Robot::mock(&project, &["--pace", "5"]);
     let set_level: Vec<&str> = SET_LEVEL.split_whitespace().collect();
     let refused = mock.call(&project, &set_level).expect(3);
     assert!(

@@ -41,6 +41,7 @@ mod new;
 mod package;
 mod pre_commit;
 mod progress;
+mod proxy;
 mod questions;
 mod release;
 mod retire;

@@ -122,7 +122,7 @@ pub fn any_seed() -> u64 {
 pub struct Faults<'r, 'm> {
     reflector: &'r Reflector<'m>,
     /// Each fault with the number of frames that it has concerned.
-    faults: Vec<(Fault, u32)>,
+    list: Vec<(Fault, u32)>,
     random: fastrand::Rng,
 }
 
@@ -135,7 +135,7 @@ impl<'r, 'm> Faults<'r, 'm> {
         let seed = random.u64(..) ^ stream;
         Self {
             reflector,
-            faults: faults.iter().map(|fault| (fault.clone(), 0)).collect(),
+            list: faults.iter().map(|fault| (fault.clone(), 0)).collect(),
             random: fastrand::Rng::with_seed(seed),
         }
     }
@@ -153,7 +153,7 @@ impl<'r, 'm> Faults<'r, 'm> {
             return delivery;
         };
         let mut draft = Draft::of(frame);
-        for index in 0..self.faults.len() {
+        for index in 0..self.list.len() {
             let Some(kind) = self.next(index, frame) else {
                 continue;
             };
@@ -167,7 +167,7 @@ impl<'r, 'm> Faults<'r, 'm> {
 
     /// Returns the kind of a fault if it strikes this frame.
     fn next(&mut self, index: usize, frame: &Frame<'_>) -> Option<FaultKind> {
-        let (fault, count) = self.faults.get_mut(index)?;
+        let (fault, count) = self.list.get_mut(index)?;
         let has_code = fault.code.is_none_or(|code| code == frame.id.code);
         if !has_code || !concerns(self.reflector, fault.kind, frame) {
             return None;
@@ -272,7 +272,7 @@ impl Draft {
     /// Changes the JSON of the data. Returns `false` if that is not possible.
     fn change(&mut self, change: impl FnOnce(&mut Value) -> bool) -> bool {
         let text = std::str::from_utf8(&self.data).ok();
-        let Some(mut body) = text.and_then(|text| json(text)) else {
+        let Some(mut body) = text.and_then(json) else {
             return false;
         };
         if !change(&mut body) {

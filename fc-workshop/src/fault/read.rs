@@ -66,7 +66,9 @@ fn kind(text: &str) -> Result<FaultKind, FaultError> {
     let found = match (name, value) {
         ("delay", Some(value)) => value.parse().ok().map(|ms| FaultKind::Delay(delay(ms))),
         ("slow", Some(value)) => value.parse().ok().map(FaultKind::Slow),
-        (_, None) => FaultKind::PLAIN.into_iter().find(|kind| kind.name() == name),
+        (_, None) => FaultKind::PLAIN
+            .into_iter()
+            .find(|kind| kind.name() == name),
         _ => None,
     };
     found.ok_or_else(|| {

@@ -12,6 +12,8 @@
 mod arguments;
 mod decode;
 mod drift;
+mod faults;
+mod guarantees;
 mod mock;
 mod scenarios;
 mod support;

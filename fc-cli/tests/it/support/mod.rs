@@ -2,7 +2,7 @@
 
 pub mod git;
 #[cfg(unix)]
-pub mod mock;
+pub mod robot;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -1,11 +1,11 @@
-//! A running `fcproto mock`.
+//! A running `fcproto mock` or `fcproto proxy`.
 
 use super::{Project, Run, command};
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::process::{Child, ChildStdout, Command, Stdio};
 
-/// A mock on free ports. It ends when it is dropped.
-pub struct Mock {
+/// A program that listens as a robot on free ports. It ends when it is dropped.
+pub struct Robot {
     child: Child,
     stdout: BufReader<ChildStdout>,
     /// Address of the command port.
@@ -14,10 +14,22 @@ pub struct Mock {
     pub data: String,
 }
 
-impl Mock {
-    /// Starts a mock with further arguments, and waits for its ports.
-    pub fn start(project: &Project, args: &[&str]) -> Self {
-        let free = ["mock", "--command-port", "0", "--data-port", "0"];
+impl Robot {
+    /// Starts a mock with further arguments.
+    pub fn mock(project: &Project, args: &[&str]) -> Self {
+        Self::start(project, "mock", args)
+    }
+
+    /// Starts a proxy in front of this robot, with further arguments.
+    pub fn proxy(&self, project: &Project, args: &[&str]) -> Self {
+        let (_, data_port) = self.data.rsplit_once(':').expect("a port");
+        let to = ["--to", &self.commands, "--to-data-port", data_port];
+        Self::start(project, "proxy", &[&to, args].concat())
+    }
+
+    /// Starts a program and waits for its ports.
+    fn start(project: &Project, name: &str, args: &[&str]) -> Self {
+        let free = [name, "--command-port", "0", "--data-port", "0"];
         let mut child = command(&[&free, args].concat())
             .current_dir(project.path(""))
             .stdin(Stdio::null())
@@ -39,28 +51,28 @@ impl Mock {
         }
     }
 
-    /// Runs `fcproto call` against the mock.
+    /// Runs `fcproto call` against it.
     pub fn call(&self, project: &Project, args: &[&str]) -> Run {
         project.fc(&[&["call", "--to", &self.commands], args].concat())
     }
 
-    /// Sends a signal and returns the exit status.
-    pub fn stop(mut self, signal: &str) -> Option<i32> {
+    /// Sends a signal. Returns the exit status and the output after the first line.
+    pub fn stop(mut self, signal: &str) -> (Option<i32>, String) {
         let id = self.child.id().to_string();
         let sent = Command::new("kill").args([signal, &id]).status();
         assert!(sent.is_ok_and(|sent| sent.success()));
         self.end()
     }
 
-    /// Waits for the end of the mock and returns its exit status.
-    pub fn end(&mut self) -> Option<i32> {
+    /// Waits for the end. Returns the exit status and the output after the first line.
+    pub fn end(&mut self) -> (Option<i32>, String) {
         let mut rest = String::new();
         self.stdout.read_to_string(&mut rest).expect("its output");
-        self.child.wait().expect("its end").code()
+        (self.child.wait().expect("its end").code(), rest)
     }
 }
 
-impl Drop for Mock {
+impl Drop for Robot {
     fn drop(&mut self) {
         // It may have ended already.
         let _ = self.child.kill();
