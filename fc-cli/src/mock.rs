@@ -41,6 +41,11 @@ pub struct Options {
     stream_after: Vec<String>,
     #[arg(
         long,
+        help = both("前提不满足的指令也接受", "Accept commands although their preconditions are not met")
+    )]
+    no_preconditions: bool,
+    #[arg(
+        long,
         value_name = "FILE",
         help = both("按场景文件响应", "Respond as a scenario says")
     )]
@@ -93,6 +98,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let mut settings = Settings {
         pace: Duration::from_millis(options.pace),
         stream_after: options.stream_after.clone(),
+        ignores_preconditions: options.no_preconditions,
         scenario: None,
         expect: options.expect,
     };

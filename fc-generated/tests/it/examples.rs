@@ -5,7 +5,6 @@ use fc_generated::descriptors::OPERATIONS;
 use fc_runtime::{OperationInfo, OperationKind};
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::load;
-use fc_spec::model::Exchange;
 use fc_spec::syntax::read_dir;
 use fc_workshop::mock::{Mock, Settings};
 use std::path::Path;
@@ -39,17 +38,13 @@ fn the_app_tours_a_mock_of_the_spec() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut faults = Faults::new();
     let sources = read_dir(&root, Path::new("spec"), &mut faults);
-    let mut model = load(&sources, &mut faults).model().expect("a valid spec");
-    // The app calls everything once, in the order of the spec, so preconditions of the owner must not count.
-    for operation in &mut model.operations {
-        if let Exchange::Command { accepted, .. } = &mut operation.exchange {
-            *accepted = None;
-        }
-    }
+    let model = load(&sources, &mut faults).model().expect("a valid spec");
     let settings = Settings {
         pace: Duration::from_millis(1),
         // The example robot, too, sends its picture after this command.
         stream_after: vec!["get_map_image".to_owned()],
+        // The app calls everything once, in the order of the spec.
+        ignores_preconditions: true,
         ..Settings::default()
     };
     let mock = Mock::start(model, settings).unwrap();

@@ -37,6 +37,8 @@ pub struct Settings {
     pub pace: Duration,
     /// Names of commands after which bytes with their code and message id are sent on the data port.
     pub stream_after: Vec<String>,
+    /// `true` if commands are accepted although their preconditions are not met.
+    pub ignores_preconditions: bool,
     /// The scenario to play.
     pub scenario: Option<Scenario>,
     /// `true` if the mock ends with the scenario: when its expectations are met or broken, or its time is over.
@@ -48,6 +50,7 @@ impl Default for Settings {
         Self {
             pace: Duration::from_millis(500),
             stream_after: Vec::new(),
+            ignores_preconditions: false,
             scenario: None,
             expect: false,
         }

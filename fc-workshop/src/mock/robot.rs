@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::process;
 use crate::arguments::json;
 use crate::facts;
-use crate::scenario::{Action, Play, Verdict, merge};
+use crate::scenario::{Action, Play, Verdict, merge, omit};
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Frame, FrameError, FrameId, Packing, Reflector};
 use fc_spec::model::{
@@ -26,6 +26,8 @@ pub(super) struct Robot<'m> {
     plan: Vec<Planned<'m>>,
     /// The time between two reports of a process whose interval the spec does not specify.
     pace: Duration,
+    /// `true` if commands are accepted although their preconditions are not met.
+    ignores_preconditions: bool,
     scenario: Option<Play>,
 }
 
@@ -70,6 +72,7 @@ impl<'m> Robot<'m> {
             memory: Memory::new(model),
             plan: Vec::new(),
             pace: settings.pace,
+            ignores_preconditions: settings.ignores_preconditions,
             scenario: settings.scenario.clone().map(Play::new),
         };
         for report in spontaneous(reflector) {
@@ -162,7 +165,8 @@ impl<'m> Robot<'m> {
         if let Some(action) = scenario.and_then(|play| play.request(&operation.name, &request)) {
             return self.act(frame.id, operation, &request, &action);
         }
-        if let Some(objection) = self.memory.objection(model, operation) {
+        let objection = self.memory.objection(model, operation);
+        if let Some(objection) = objection.filter(|_| !self.ignores_preconditions) {
             return self.refuse(frame.id, ResultRole::Protocol, &objection);
         }
         self.memory.accept(model, operation, &request);
@@ -194,6 +198,9 @@ impl<'m> Robot<'m> {
             (self.memory).fill(model, command, Direction::Response, &mut message);
             if let Some(values) = &action.answer {
                 merge(&mut message, values);
+            }
+            for path in &action.omit {
+                omit(&mut message, path);
             }
             if action.reports.is_none() {
                 self.begin(command, request, &message);

@@ -49,6 +49,8 @@ pub struct Rule {
 pub struct Action {
     /// Values that replace those of the example.
     pub answer: Option<Value>,
+    /// Paths of wire keys that the response lacks, as with an old firmware.
+    pub omit: Vec<Vec<String>>,
     /// Result code of a refusal.
     pub refuse: Option<i64>,
     /// Time before the response.
@@ -132,6 +134,22 @@ fn fits(with: &Value, value: &Value) -> bool {
         (Value::Number(with), Value::Number(number)) => with.compare(number).is_eq(),
         _ => with == value,
     }
+}
+
+/// Removes a key from a message. Returns `false` if the message lacks it.
+pub(crate) fn omit(message: &mut Value, path: &[String]) -> bool {
+    let Some((last, path)) = path.split_last() else {
+        return false;
+    };
+    let object = path
+        .iter()
+        .try_fold(message, |value, key| value.get_mut(key));
+    let Some(Value::Object(entries)) = object else {
+        return false;
+    };
+    let before = entries.len();
+    entries.retain(|(key, _)| key != last);
+    entries.len() < before
 }
 
 /// Puts values into a message. Objects are merged, and other values replaced.

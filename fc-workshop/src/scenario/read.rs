@@ -1,6 +1,6 @@
 //! Reads a scenario from YAML. Errors have the place in the file.
 
-use super::{Action, Expected, Rule, Scenario, ScriptedReport, merge};
+use super::{Action, Expected, Rule, Scenario, ScriptedReport, merge, omit};
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Reflector};
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
@@ -143,6 +143,7 @@ impl<'m> Reader<'_, 'm> {
             "with",
             "times",
             "answer",
+            "omit",
             "refuse",
             "delay_ms",
             "silent",
@@ -156,6 +157,9 @@ impl<'m> Reader<'_, 'm> {
                 "with" => rule.with = value(node),
                 "times" => rule.times = reader.integer(node).and_then(|it| it.try_into().ok()),
                 "answer" => action.answer = Some(reader.body(command, Direction::Response, node)),
+                "omit" => {
+                    action.omit = reader.list(node, |reader, node| reader.omitted(command, node));
+                }
                 "refuse" => action.refuse = reader.result(node),
                 "delay_ms" => action.delay = reader.milliseconds(node),
                 "silent" => action.silent = reader.truth(node),
@@ -221,6 +225,13 @@ impl<'m> Reader<'_, 'm> {
         let name = node.as_str().unwrap_or_default();
         let found = model.operation(name);
         if let Some(operation) = found.filter(|operation| operation.kind() == kind) {
+            if operation.code.value.is_none() {
+                let message = text!(
+                    "`{name}` 还没有功能码，不会出现在通信中",
+                    "`{name}` has no code yet, so it is never sent"
+                );
+                self.error(FaultCode::UnknownOperation, node, message);
+            }
             return Some(operation);
         }
         let code = match (found, kind) {
@@ -266,6 +277,23 @@ impl<'m> Reader<'_, 'm> {
             self.error(FaultCode::ExampleType, node, message);
         }
         values
+    }
+
+    /// Returns the path of a key that the example of a response has.
+    fn omitted(&mut self, command: &Operation, node: Node<'_>) -> Option<Vec<String>> {
+        let word = node.as_str().unwrap_or_default();
+        let path: Vec<_> = word.split('.').map(str::to_owned).collect();
+        let samples = self.reflector.samples();
+        let mut message = samples.message(command, Direction::Response, Profile::Example);
+        if omit(&mut message, &path) {
+            return Some(path);
+        }
+        let message = text!(
+            "响应的示例没有键 `{word}`",
+            "the example of the response has no key `{word}`"
+        );
+        self.error(FaultCode::UnknownKey, node, message);
+        None
     }
 
     /// Returns the code of a result, which has its name or its number.

@@ -1,12 +1,23 @@
 //! Reading scenarios.
 
-use crate::support::small;
-use fc_reflect::Reflector;
+use crate::support::{root, small};
+use fc_reflect::sample::Profile;
+use fc_reflect::{Direction, Reflector};
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::model::{Dump, Lang};
+use fc_spec::model::{Dump, Lang, Model, Operation, Value};
 use fc_spec::source::Sources;
-use fc_workshop::scenario::Scenario;
-use std::path::Path;
+use fc_workshop::client::{Client, ClientError};
+use fc_workshop::mock::{Mock, Settings};
+use fc_workshop::run::block_on;
+use fc_workshop::scenario::{Expected, Scenario, Verdict};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A test fails after this time, instead of hanging.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The wait for a response that may not come.
+const WAIT: Duration = Duration::from_millis(900);
 
 /// A scenario of the small spec, and its errors: place and message.
 const FAULTY: &[(&str, &[&str])] = &[
@@ -29,6 +40,10 @@ const FAULTY: &[(&str, &[&str])] = &[
     (
         "on: [{ request: set_light, answer: { left: -1 } }]",
         &["1:36", "out_of_range", "left"],
+    ),
+    (
+        "on: [{ request: set_light, omit: [right] }]",
+        &["1:35", "has no key `right`"],
     ),
     (
         "on: [{ request: set_light, silent: 1 }]",
@@ -69,22 +84,153 @@ fn errors_of_a_scenario_have_their_place() {
     }
 }
 
-#[test]
-fn the_scenarios_of_the_repository_fit_the_release() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let release = std::fs::read_to_string(root.join("spec/releases/2024.09.json")).unwrap();
-    let model = Dump::read(&release).unwrap();
-    let reflector = Reflector::new(&model);
-    let mut count = 0;
-    for entry in std::fs::read_dir(root.join("conformance/scenarios")).unwrap() {
+/// The scenarios of the repository, with their names.
+fn scenarios(model: &Model) -> Vec<(String, Scenario)> {
+    let reflector = Reflector::new(model);
+    let mut scenarios = Vec::new();
+    for entry in std::fs::read_dir(root().join("conformance/scenarios")).unwrap() {
         let path = entry.unwrap().path();
         let text = std::fs::read_to_string(&path).unwrap();
         let sources = Sources::from_texts([(path.display().to_string(), text)]);
         let mut faults = Faults::new();
         let scenario = Scenario::read(&reflector, &sources, &mut faults);
         let shown = render(&faults, &sources, Format::Text, Lang::En);
-        assert!(scenario.is_some_and(|it| !it.expect.is_empty()), "{shown}");
-        count += 1;
+        let name = path.file_stem().unwrap().display().to_string();
+        scenarios.push((name, scenario.unwrap_or_else(|| panic!("{shown}"))));
     }
-    assert!(count >= 3, "{count} scenarios");
+    scenarios
+}
+
+/// An app that causes events in their order. A good one calls again over a new connection after a loss, and
+/// acknowledges all reports; another one gives up.
+struct App<'m> {
+    is_good: bool,
+    reflector: &'m Reflector<'m>,
+    address: String,
+    client: Option<Client<'m>>,
+}
+
+impl<'m> App<'m> {
+    async fn client(&mut self) -> &mut Client<'m> {
+        if self.client.is_none() {
+            let client = Client::connect(self.reflector, &self.address, PATIENCE).await;
+            self.client = Some(client.unwrap());
+        }
+        self.client.as_mut().unwrap()
+    }
+
+    /// Sends a command with the example and these values. Any end of the call is fine.
+    async fn call(&mut self, name: &str, with: &Value) {
+        let model = self.reflector.model();
+        let operation = model.operation(name).unwrap();
+        let samples = self.reflector.samples();
+        let mut message = samples.message(operation, Direction::Request, Profile::Example);
+        if let Value::Object(entries) = with {
+            for (key, value) in entries {
+                message.set(key, value.clone());
+            }
+        }
+        let id = self.reflector.id(operation, Direction::Request, 0).unwrap();
+        let data: Arc<[u8]> = message.to_string().into_bytes().into();
+        for _ in 0..if self.is_good { 2 } else { 1 } {
+            let client = self.client().await;
+            let call = client.call(id.kind, id.code, Arc::clone(&data), WAIT);
+            let Err(ClientError::Ended(_)) = call.await else {
+                break;
+            };
+            self.client = None;
+        }
+    }
+
+    async fn cause(&mut self, event: &Expected) {
+        match event {
+            Expected::Request(name, with) => self.call(name, with).await,
+            Expected::Acknowledgement(report) => loop {
+                let frame = self.client().await.report(PATIENCE).await.unwrap();
+                if frame.operation.is_some_and(|it| it.name == *report) {
+                    break;
+                }
+            },
+        }
+    }
+}
+
+/// Plays a scenario with an app that causes these events. Returns the verdict.
+fn play(model: &Model, scenario: Scenario, events: &[Expected], is_good: bool) -> Option<Verdict> {
+    let settings = Settings {
+        scenario: Some(scenario),
+        expect: true,
+        ignores_preconditions: true,
+        ..Settings::default()
+    };
+    let mock = Mock::start(model.clone(), settings).unwrap();
+    let reflector = Reflector::new(model);
+    block_on(async {
+        let mut app = App {
+            is_good,
+            reflector: &reflector,
+            address: mock.commands().to_string(),
+            client: None,
+        };
+        for event in events {
+            app.cause(event).await;
+        }
+        // An acknowledgement is written while the next event is awaited.
+        if let Some(client) = app.client.as_mut().filter(|_| is_good) {
+            while client.report(WAIT).await.is_ok() {}
+        }
+    })
+    .unwrap();
+    mock.verdict()
+}
+
+fn release() -> Model {
+    let release = root().join("spec/releases/2024.09.json");
+    Dump::read(&std::fs::read_to_string(release).unwrap()).unwrap()
+}
+
+#[test]
+fn each_scenario_of_the_repository_can_be_met_and_broken() {
+    let model = &release();
+    let scenarios = scenarios(model);
+    assert!(scenarios.len() >= 20, "{} scenarios", scenarios.len());
+    std::thread::scope(|scope| {
+        for (name, scenario) in scenarios {
+            scope.spawn(move || {
+                let events = &scenario.expect;
+                let verdict = play(model, scenario.clone(), events, true);
+                assert_eq!(verdict, Some(Verdict::Met), "{name}");
+
+                let (_, before) = events.split_last().unwrap();
+                let short = Scenario {
+                    within: Duration::from_secs(3),
+                    ..scenario.clone()
+                };
+                let verdict = play(model, short, before, false);
+                assert!(matches!(verdict, Some(Verdict::Missing(_))), "{name}");
+
+                if let Some(never) = scenario.never.first() {
+                    let forbidden = [Expected::Request(never.clone(), Value::Null)];
+                    let verdict = play(model, scenario.clone(), &forbidden, false);
+                    assert_eq!(verdict, Some(Verdict::Forbidden(never.clone())), "{name}");
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn each_process_of_the_release_has_a_scenario() {
+    let model = release();
+    let scenarios = scenarios(&model);
+    let starts = |command: &Operation| {
+        scenarios.iter().any(|(_, scenario)| {
+            let mut rules = scenario.rules.iter();
+            rules.any(|rule| rule.request == command.name && rule.action.reports.is_some())
+        })
+    };
+    for command in &model.operations {
+        let is_process = !command.sets_off().is_empty() && command.code.value.is_some();
+        assert!(!is_process || starts(command), "{}", command.name);
+    }
 }
