@@ -7,9 +7,9 @@ use crate::help::{Help, PageOptions, Part, global};
 use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
-    call, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate, git, init,
-    inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire, schema,
-    settle, shell,
+    call, certify, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate,
+    git, init, inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire,
+    schema, settle, shell,
 };
 
 /// Styles of help and usage errors.
@@ -79,6 +79,7 @@ pub enum Command {
     Call(call::Options),
     Mock(mock::Options),
     Proxy(proxy::Options),
+    Certify(certify::Options),
     Decode(decode::Options),
     Encode(encode::Options),
     Drift(drift::Options),

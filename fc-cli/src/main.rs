@@ -2,8 +2,10 @@
 //!
 //! Each subcommand has one file with its options and messages. `fc_codegen` and the other crates do the work.
 
+mod allow;
 mod args;
 mod call;
+mod certify;
 mod changelog;
 mod check;
 mod codes;
@@ -96,6 +98,7 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Retire(options) => retire::run(&args.place, options),
         Command::Call(options) => call::run(&args.place, options),
         Command::Mock(options) => mock::run(&args.place, options),
+        Command::Certify(options) => certify::run(&args.place, options),
         Command::Proxy(options) => proxy::run(&args.place, options),
         Command::Lsp(options) => lsp::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),

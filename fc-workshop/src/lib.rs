@@ -6,6 +6,7 @@
 pub mod answer;
 pub mod arguments;
 pub mod capture;
+pub mod certify;
 pub mod client;
 pub mod connection;
 pub mod decode;

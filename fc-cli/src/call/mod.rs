@@ -13,6 +13,7 @@ use fc_spec::model::{Effect, Kind, Model, Operation, Side, Value};
 use fc_workshop::arguments::{Arguments, json};
 use fc_workshop::facts;
 
+use crate::allow::Allowed;
 use crate::help::{Help, Part};
 use crate::input;
 use crate::lang::{both, lang, said};
@@ -113,15 +114,6 @@ enum Shown {
     Text,
     #[value(help = both("每条消息一行 JSON", "One line of JSON per message"))]
     Json,
-}
-
-/// The largest effect that a call may have. The order is that of the danger.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
-enum Allowed {
-    #[value(help = both("改变机器人保存的内容", "Change what the robot stores"))]
-    Config,
-    #[value(help = both("也让机器人运动，以及影响未知的指令", "Also move the robot, and commands of unknown effect"))]
-    Motion,
 }
 
 pub fn help() -> Help {
@@ -356,20 +348,12 @@ fn allow(operation: Option<&Operation>, allowed: Option<Allowed>) -> Result<(), 
         Some(_) | None => None,
     };
     let effect = effect.unwrap_or(Effect::Unknown);
-    let needed = match effect {
-        Effect::Read => return Ok(()),
-        Effect::Config => Allowed::Config,
-        Effect::Motion | Effect::Unknown => Allowed::Motion,
-    };
-    if allowed.is_some_and(|allowed| allowed >= needed) {
+    let Some(needed) = Allowed::needed(effect).filter(|needed| allowed < Some(*needed)) else {
         return Ok(());
-    }
+    };
     let name = operation.map_or("--raw", |operation| &operation.name);
     let effect = effect.name();
-    let option = match needed {
-        Allowed::Config => "--allow config",
-        Allowed::Motion => "--allow motion",
-    };
+    let option = needed.option();
     Err(said!(
         "`{name}` 的影响是 `{effect}`，没有发送；确定要发送就加 `{option}`",
         "`{name}` has the effect `{effect}` and was not sent; add `{option}` to send it"

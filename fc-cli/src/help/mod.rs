@@ -13,9 +13,9 @@ use clap::{Arg, ArgAction, Command, CommandFactory as _};
 use crate::args::{self, Args};
 use crate::lang::both;
 use crate::{
-    call, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate, git, init,
-    inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire, schema,
-    settle, shell,
+    call, certify, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate,
+    git, init, inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire,
+    schema, settle, shell,
 };
 
 pub use page::{Options as PageOptions, run as page};
@@ -70,6 +70,7 @@ fn of(path: &[&str]) -> Option<Help> {
         ["call"] => call::help(),
         ["mock"] => mock::help(),
         ["proxy"] => proxy::help(),
+        ["certify"] => certify::help(),
         ["decode"] => decode::help(),
         ["encode"] => encode::help(),
         ["drift"] => drift::help(),

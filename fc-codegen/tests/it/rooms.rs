@@ -184,6 +184,7 @@ const CRATES: &[Crate] = &[
             "drift",
             "fault",
             "proxy",
+            "certify",
         ],
         upwards: &[],
     },

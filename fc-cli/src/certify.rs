@@ -1,0 +1,183 @@
+//! `fcproto certify`.
+
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+use fc_codegen::inspect::fingerprint;
+use fc_reflect::Reflector;
+use fc_spec::model::Effect;
+use fc_workshop::certify::{self, Certificate, Outcome, Settings, Trial};
+use fc_workshop::client::{Client, ClientError};
+use fc_workshop::facts;
+use fc_workshop::run::{Interrupt, block_on};
+
+use crate::allow::Allowed;
+use crate::endpoint::with_port;
+use crate::help::{Help, Part};
+use crate::lang::{both, in_lang, said};
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::recording::Shown;
+use crate::spec::Spec;
+
+/// Options of `fcproto certify`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    #[arg(
+        long,
+        value_name = "HOST[:PORT]",
+        help = both("机器人的地址；端口默认按规范", "Address of the robot; the port is that of the spec by default")
+    )]
+    robot: String,
+    #[arg(
+        long,
+        value_name = "DIR",
+        help = both("写入 certificate.html 和 certificate.json 的目录", "Directory for certificate.html and certificate.json")
+    )]
+    out: Option<PathBuf>,
+    #[arg(
+        long,
+        value_name = "EFFECT",
+        help = both("允许改变机器人的指令", "Allow commands that change the robot")
+    )]
+    allow: Option<Allowed>,
+    #[arg(
+        long = "only",
+        value_name = "TRIAL",
+        help = both("只做这些试验，例如 `frame` 或 `call.get_robot_sn`", "Run these trials only, such as `frame` or `call.get_robot_sn`")
+    )]
+    only: Vec<String>,
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        help = both("输出格式", "Output format")
+    )]
+    format: Shown,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "检验机器人是否符合规范，并出具证书",
+            "Test a robot against the spec and write a certificate",
+        ),
+        details: vec![
+            Part::Text(both(
+                "对机器人做一系列试验：每条指令的示例请求，消息号、分段、并发、压缩，缺少和错误的键，损坏的帧，上报的重发和应答。每项试验一行结果。\
+                 证书是一个网页和一个 JSON 文件，中英双语，失败的试验附收发的字节，并写明规范的指纹。",
+                "Runs trials against a robot: the example of each command; ids, split, pipelined and compressed requests; missing and wrong \
+                 keys; damaged frames; repetition and acknowledgement of reports. Each trial is a line. The certificate is a page and a JSON \
+                 file in both languages, with the bytes of what failed and the fingerprint of the spec.",
+            )),
+            Part::Text(both(
+                "只发送影响为 `read` 的指令；`--allow` 允许更多。",
+                "Only commands with the effect `read` are sent. `--allow` allows more.",
+            )),
+            Part::Examples(vec![
+                ("fcproto certify --robot 192.0.2.3 --out certificate", ""),
+                (
+                    "fcproto certify --robot 127.0.0.1:5000 --only frame",
+                    both("只检验损坏的帧", "Damaged frames only"),
+                ),
+            ]),
+        ],
+        fails: both(
+            "规范有错误，或有试验失败",
+            "Errors in the spec, or a trial that failed",
+        ),
+        speaks: both("`text` 格式", "`text`"),
+    }
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    let Some(model) = &spec.model else {
+        spec.show_faults()?;
+        return Ok(spec.status());
+    };
+    let reflector = &Reflector::new(model);
+    let port = model.transport.ports.command.number;
+    let settings = Settings {
+        address: with_port(&options.robot, port),
+        allowed: effects(options.allow),
+        only: options.only.clone(),
+    };
+    let start = SystemTime::now();
+    let trials: Result<_, Failure> = block_on(async {
+        let mut interrupt = Interrupt::new()?;
+        let wait = facts::call_timeout(model);
+        drop(Client::connect(reflector, &settings.address, wait).await?);
+        let mut told = |trial: &Trial| show(options.format, trial);
+        Ok(certify::robot(reflector, &settings, &mut told, interrupt.next()).await)
+    })?;
+    let trials = match trials {
+        Ok(Some(trials)) => trials,
+        // Ctrl-C: an incomplete certificate is none.
+        Ok(None) => return Ok(Status::Faulty),
+        Err(failure) if failure.is::<ClientError>() => {
+            print::failure(failure.as_ref());
+            return Ok(Status::Unanswered);
+        }
+        Err(failure) => return Err(failure),
+    };
+    let certificate = Certificate {
+        address: settings.address,
+        protocol: model.protocol.id.clone(),
+        version: model.protocol.version.clone(),
+        fingerprint: fingerprint(model),
+        program: env!("CARGO_PKG_VERSION").to_owned(),
+        start,
+        duration: start.elapsed().unwrap_or_default(),
+        trials,
+    };
+    if let Some(folder) = &options.out {
+        std::fs::create_dir_all(folder)?;
+        std::fs::write(
+            folder.join("certificate.html"),
+            certify::html(&certificate)?,
+        )?;
+        std::fs::write(folder.join("certificate.json"), certify::json(&certificate))?;
+    }
+    let [passed, failed, skipped] = certificate.counts();
+    if options.format == Shown::Text {
+        print::done(&said!(
+            "{passed} 项通过，{failed} 项失败，{skipped} 项跳过\n",
+            "{passed} passed, {failed} failed, {skipped} skipped\n"
+        ))?;
+    }
+    Ok(if certificate.is_passed() {
+        Status::Fine
+    } else {
+        Status::Faulty
+    })
+}
+
+/// Returns the effects that may be caused.
+fn effects(allowed: Option<Allowed>) -> Vec<Effect> {
+    let all = [
+        Effect::Read,
+        Effect::Config,
+        Effect::Motion,
+        Effect::Unknown,
+    ];
+    let may = |effect: &Effect| Allowed::needed(*effect) <= allowed;
+    all.into_iter().filter(may).collect()
+}
+
+fn show(format: Shown, trial: &Trial) {
+    let (result, reason) = match &trial.outcome {
+        Outcome::Passed => (both("通过", "passed"), None),
+        Outcome::Failed(failure) => (both("失败", "FAILED"), Some(&failure.reason)),
+        Outcome::Skipped(reason) => (both("跳过", "skipped"), Some(reason)),
+    };
+    let line = if format == Shown::Json {
+        certify::json_line(trial)
+    } else {
+        let reason = reason.map(|reason| format!(": {}", in_lang(reason)));
+        format!("{result}  {}{}", trial.name, reason.unwrap_or_default())
+    };
+    // A reader that has gone ends the program at its next output.
+    let _ = print::result(&(line + "\n"));
+}

@@ -1,0 +1,160 @@
+//! Frames with errors.
+
+use super::line::{Evidence, Next, Step, Stop, deviates};
+use super::requests::refusal;
+use super::robot::Stage;
+use crate::facts;
+use fc_reflect::{FrameId, Packing};
+use fc_spec::model::{EncodingRole, HeaderRole, ResultRole};
+use fc_spec::text;
+
+/// Returns the frame of a probe.
+fn frame(stage: &Stage<'_, '_>) -> Step<(FrameId, Vec<u8>)> {
+    let (_, id, data) = stage.probe(1)?;
+    Ok((id, stage.seal(id, &data, Packing::Plain)?))
+}
+
+pub(super) async fn bad_head(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
+    let (_, mut bytes) = frame(stage)?;
+    let head = stage.model().frame.field(HeaderRole::Head);
+    let head = head.ok_or_else(|| lacks(HeaderRole::Head))?;
+    if let Some(byte) = bytes.get_mut(head.offset) {
+        *byte ^= 0xFF;
+    }
+    ends(stage, evidence, &bytes).await
+}
+
+/// Sends a frame whose header has another length. `u64::MAX` is the largest that fits.
+pub(super) async fn wrong_length(
+    stage: &Stage<'_, '_>,
+    evidence: &mut Evidence,
+    length: u64,
+) -> Step {
+    let (_, mut bytes) = frame(stage)?;
+    let overwritten = length.min(u64::from(u32::MAX));
+    let role = HeaderRole::TotalLength;
+    stage.reflector.overwrite(&mut bytes, role, overwritten);
+    ends(stage, evidence, &bytes).await
+}
+
+/// Sends bytes after which the next frame cannot be found. The device must close the connection, and serve others.
+async fn ends(stage: &Stage<'_, '_>, evidence: &mut Evidence, bytes: &[u8]) -> Step {
+    let mut line = stage.connect(evidence).await?;
+    line.send(bytes).await;
+    let wait = facts::call_timeout(stage.model());
+    loop {
+        match line.next(wait).await? {
+            Next::Closed => break,
+            Next::Frame(_) => {}
+            Next::Silence => {
+                return deviates(text!(
+                    "设备没有断开连接",
+                    "the device has not closed the connection"
+                ));
+            }
+        }
+    }
+    stage.serves().await
+}
+
+fn lacks(role: HeaderRole) -> Stop {
+    let role = role.name();
+    Stop::Skip(text!("帧头没有 `{role}`", "the header has no `{role}`"))
+}
+
+pub(super) async fn unknown_kind(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
+    let kinds = &stage.model().frame.kinds;
+    if stage.model().frame.field(HeaderRole::Kind).is_none() {
+        return Err(lacks(HeaderRole::Kind));
+    }
+    let (_, id, data) = stage.probe(1)?;
+    let unknown = (0..=u8::MAX).find(|kind| kinds.with_value(*kind).is_none());
+    let kind = unknown.ok_or_else(|| lacks(HeaderRole::Kind))?;
+    let bytes = stage.seal(FrameId { kind, ..id }, &data, Packing::Plain)?;
+    let mut line = stage.connect(evidence).await?;
+    line.send(&bytes).await;
+    // The refusal has the unknown kind, too, so only the connection is checked.
+    line.tolerate_errors();
+    stage.ask(&mut line, 2).await.map(|_| ())
+}
+
+pub(super) async fn bad_digest(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
+    if stage.model().frame.field(HeaderRole::Digest).is_none() {
+        return Err(lacks(HeaderRole::Digest));
+    }
+    let (id, mut bytes) = frame(stage)?;
+    let role = HeaderRole::Digest;
+    stage.reflector.overwrite(&mut bytes, role, 0xBAD);
+    protocol_error(stage, evidence, id, &bytes).await
+}
+
+/// Sends a frame that must be refused as a protocol error. The connection must stay.
+async fn protocol_error(
+    stage: &Stage<'_, '_>,
+    evidence: &mut Evidence,
+    id: FrameId,
+    bytes: &[u8],
+) -> Step {
+    let mut line = stage.connect(evidence).await?;
+    refusal(stage, &mut line, id, bytes, ResultRole::Protocol).await?;
+    stage.ask(&mut line, 2).await.map(|_| ())
+}
+
+/// Returns the frame of data that claims to be compressed, with this length after decompression.
+fn packed(stage: &Stage<'_, '_>, data: &[u8], plain_length: u64) -> Step<(FrameId, Vec<u8>)> {
+    let mut encodings = stage.model().frame.encodings.iter();
+    let gzip = encodings.find(|encoding| encoding.role == EncodingRole::Gzip);
+    let gzip =
+        gzip.ok_or_else(|| Stop::Skip(text!("协议没有压缩", "the protocol has no compression")))?;
+    let (_, id, _) = stage.probe(1)?;
+    let mut bytes = stage.seal(id, data, Packing::Plain)?;
+    let value = u64::from(gzip.value);
+    stage
+        .reflector
+        .overwrite(&mut bytes, HeaderRole::Encoding, value);
+    let role = HeaderRole::PlainLength;
+    stage.reflector.overwrite(&mut bytes, role, plain_length);
+    Ok((id, bytes))
+}
+
+pub(super) async fn bad_gzip(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
+    let (id, bytes) = packed(stage, b"this is no gzip member", 100)?;
+    protocol_error(stage, evidence, id, &bytes).await
+}
+
+pub(super) async fn gzip_bomb(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
+    let limit = stage.model().limits.inflated_bytes;
+    let (_, bytes) = packed(stage, b"this is no gzip member", u64::from(limit) + 1)?;
+    endured(stage, evidence, &bytes).await
+}
+
+pub(super) async fn deep_nesting(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
+    let (_, id, _) = stage.probe(1)?;
+    let most = usize::try_from(stage.model().limits.frame_bytes).unwrap_or(usize::MAX);
+    let depth = 100_000.min(most / 16).max(1000);
+    let data = ["{\"a\":", &"[".repeat(depth), &"]".repeat(depth), "}"].concat();
+    let bytes = stage.seal(id, data.as_bytes(), Packing::Plain)?;
+    endured(stage, evidence, &bytes).await
+}
+
+/// Sends a frame that the device may refuse or answer by closing the connection. It must serve others.
+async fn endured(stage: &Stage<'_, '_>, evidence: &mut Evidence, bytes: &[u8]) -> Step {
+    let mut line = stage.connect(evidence).await?;
+    line.send(bytes).await;
+    let wait = facts::call_timeout(stage.model());
+    if let Next::Silence = line.next(wait).await? {
+        return deviates(text!(
+            "设备既不响应，也不断开连接",
+            "the device neither responds nor closes the connection"
+        ));
+    }
+    stage.serves().await
+}
+
+pub(super) async fn unfinished(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
+    let (_, bytes) = frame(stage)?;
+    let mut line = stage.connect(evidence).await?;
+    let half = bytes.get(..bytes.len() / 2).unwrap_or(&bytes);
+    line.send(half).await;
+    stage.serves().await
+}
