@@ -13,6 +13,7 @@
 mod audience;
 #[cfg(unix)]
 mod call;
+mod certify;
 mod check;
 mod codes;
 mod decode;

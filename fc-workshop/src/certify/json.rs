@@ -1,6 +1,7 @@
 //! The certificate as JSON.
 
 use super::{Certificate, Outcome};
+use crate::decode;
 use fc_spec::model::Text;
 use serde::Serialize;
 use std::time::UNIX_EPOCH;
@@ -42,7 +43,7 @@ impl<'c> Trial<'c> {
             Outcome::Skipped(reason) => ("skipped", Some(reason), None),
             Outcome::Failed(failure) => ("failed", Some(&failure.reason), Some(failure)),
         };
-        let all = |bytes: &[Vec<u8>]| bytes.iter().map(|bytes| hex(bytes)).collect();
+        let all = |bytes: &[Vec<u8>]| bytes.iter().map(|bytes| shown(bytes)).collect();
         Self {
             name: &trial.name,
             demand: &trial.demand,
@@ -88,11 +89,11 @@ pub fn text(certificate: &Certificate) -> String {
 }
 
 /// Returns bytes in hexadecimal. Long ones are cut.
-fn hex(bytes: &[u8]) -> String {
+fn shown(bytes: &[u8]) -> String {
     const LONGEST: usize = 512;
-    let shown = bytes.get(..LONGEST).unwrap_or(bytes);
-    let mut text: String = shown.iter().map(|byte| format!("{byte:02x}")).collect();
-    if shown.len() < bytes.len() {
+    let start = bytes.get(..LONGEST).unwrap_or(bytes);
+    let mut text = decode::hex(start);
+    if start.len() < bytes.len() {
         text.push('…');
     }
     text

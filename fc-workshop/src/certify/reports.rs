@@ -1,28 +1,23 @@
 //! Reports of a robot, and their repetition.
 
-use super::line::{Evidence, Line, Next, Step, Stop, deviates, shown};
+use super::line::{Evidence, Line, Next, Step, Stop, deviates, example, shown};
 use super::robot::Stage;
 use crate::facts;
-use fc_reflect::{Direction, Frame};
-use fc_spec::model::{Exchange, KindRole, Operation};
+use fc_reflect::{Direction, Frame, Packing};
+use fc_spec::model::{Ack, Exchange, KindRole, Operation};
 use fc_spec::text;
 use std::time::{Duration, Instant};
 
-/// The time in which a repetition may come late.
-const GRACE: Duration = Duration::from_millis(1500);
-
-/// Commands that set off reports come first, because they cause one at once.
+/// Returns the first report of a new connection, which is not acknowledged. A command that sets one off is sent, too.
 async fn first_report<'m>(stage: &Stage<'_, 'm>, line: &mut Line<'_, 'm>) -> Step<Box<Frame<'m>>> {
     line.stop_acknowledging();
     let (_, id, data) = stage.probe(1)?;
-    line.send(&stage.seal(id, &data, fc_reflect::Packing::Plain)?)
-        .await;
+    line.send(&stage.seal(id, &data, Packing::Plain)?).await;
     let mut causes = stage.commands.iter().filter(|it| !it.sets_off().is_empty());
     if let Some(command) = causes.next()
-        && let Some((id, data)) = super::line::example(stage.reflector, command, 2)
+        && let Some((id, data)) = example(stage.reflector, command, 2)
     {
-        line.send(&stage.seal(id, &data, fc_reflect::Packing::Plain)?)
-            .await;
+        line.send(&stage.seal(id, &data, Packing::Plain)?).await;
     }
     let wait = facts::call_timeout(stage.model());
     loop {
@@ -58,15 +53,20 @@ pub(super) async fn valid(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Ste
             ));
         }
         line.acknowledge(&frame).await;
-        match line.next(GRACE).await? {
+        match line.next(wait(policy(stage, operation))).await? {
             Next::Frame(next) if is_report(&next) => frame = next,
             _ => return Ok(()),
         }
     }
 }
 
+/// Returns the time in which the repetition of a report must come.
+fn wait(policy: Ack) -> Duration {
+    2 * Duration::from_millis(policy.timeout_ms.into())
+}
+
 /// Returns the policy of a report.
-fn policy(stage: &Stage<'_, '_>, report: Option<&Operation>) -> fc_spec::model::Ack {
+fn policy(stage: &Stage<'_, '_>, report: Option<&Operation>) -> Ack {
     match report.map(|report| &report.exchange) {
         Some(Exchange::Report { ack, .. }) => *ack,
         _ => stage.model().calls.ack,
@@ -77,8 +77,7 @@ pub(super) async fn repeated(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> 
     let mut line = stage.connect(evidence).await?;
     let first = first_report(stage, &mut line).await?;
     let policy = policy(stage, first.operation);
-    let timeout = Duration::from_millis(policy.timeout_ms.into());
-    let wait = timeout + timeout / 2 + GRACE;
+    let wait = wait(policy);
     let mut times = 0;
     let mut end = Instant::now() + wait;
     while let Some(left) = end.checked_duration_since(Instant::now()) {
@@ -112,9 +111,7 @@ pub(super) async fn acknowledged(stage: &Stage<'_, '_>, evidence: &mut Evidence)
     let mut line = stage.connect(evidence).await?;
     let first = first_report(stage, &mut line).await?;
     line.acknowledge(&first).await;
-    let policy = policy(stage, first.operation);
-    let timeout = Duration::from_millis(policy.timeout_ms.into());
-    let end = Instant::now() + timeout + timeout / 2 + GRACE;
+    let end = Instant::now() + wait(policy(stage, first.operation));
     while let Some(left) = end.checked_duration_since(Instant::now()) {
         match line.next(left).await? {
             Next::Frame(frame) if is_report(&frame) && frame.id == first.id => {

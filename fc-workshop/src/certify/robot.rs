@@ -1,6 +1,6 @@
 //! The trials of a robot.
 
-use super::checks::CHECKS;
+use super::checks::{About, CHECKS};
 use super::line::{Evidence, Line, Response, Step, Stop, example};
 use super::{Outcome, Settings, Trial, requests};
 use fc_reflect::{FrameId, Packing, Reflector};
@@ -17,7 +17,7 @@ pub(super) struct Stage<'r, 'm> {
     pub(super) probe: Option<&'m Operation>,
 }
 
-impl<'r, 'm> Stage<'r, 'm> {
+impl<'m> Stage<'_, 'm> {
     pub(super) fn model(&self) -> &'m Model {
         self.reflector.model()
     }
@@ -139,8 +139,13 @@ async fn all(reflector: &Reflector<'_>, settings: &Settings, run: &mut Run<'_>) 
         let outcome = evidence.outcome(called.map(|_| ()));
         run.end(name, demand, outcome);
     }
-    for check in CHECKS {
-        let (name, zh, en) = check.about();
+    for About {
+        check,
+        name,
+        zh,
+        en,
+    } in CHECKS
+    {
         if run.wants(name) {
             let mut evidence = Evidence::default();
             let result = check.run(&stage, &mut evidence).await;

@@ -10,6 +10,7 @@
 )]
 
 mod arguments;
+mod certify;
 mod decode;
 mod drift;
 mod faults;
