@@ -69,7 +69,7 @@ pub fn help() -> Help {
                  证书是一个网页和一个 JSON 文件，中英双语，失败的试验附收发的字节，并写明规范的指纹。",
                 "Runs trials against a robot: the example of each command; ids, split, pipelined and compressed requests; missing and wrong \
                  keys; damaged frames; repetition and acknowledgement of reports. Each trial is a line. The certificate is a page and a JSON \
-                 file in both languages, with the bytes of what failed and the fingerprint of the spec.",
+                 file in both languages, with the bytes of failed trials and the fingerprint of the spec.",
             )),
             Part::Text(both(
                 "只发送影响为 `read` 的指令；`--allow` 允许更多。",
@@ -129,6 +129,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         fingerprint: fingerprint(model),
         program: env!("CARGO_PKG_VERSION").to_owned(),
         start,
+        only: settings.only,
         duration: start.elapsed().unwrap_or_default(),
         trials,
     };

@@ -19,6 +19,9 @@ pub(super) struct Written<'c> {
     /// Seconds since 1970.
     start: u64,
     duration_ms: u64,
+    /// Absent if all trials were wanted.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    only: &'c [String],
     trials: Vec<Trial<'c>>,
 }
 
@@ -76,6 +79,7 @@ impl<'c> Written<'c> {
             program: &certificate.program,
             start: start.map_or(0, |start| start.as_secs()),
             duration_ms: u64::try_from(milliseconds).unwrap_or(u64::MAX),
+            only: &certificate.only,
             trials: certificate.trials.iter().map(Trial::new).collect(),
         }
     }

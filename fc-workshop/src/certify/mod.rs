@@ -82,6 +82,8 @@ pub struct Certificate {
     pub start: SystemTime,
     /// Duration.
     pub duration: Duration,
+    /// The names of the only trials that were wanted, or none for all.
+    pub only: Vec<String>,
     /// The trials in their order.
     pub trials: Vec<Trial>,
 }

@@ -4,7 +4,7 @@ use super::checks::{About, CHECKS};
 use super::line::{Evidence, Line, Response, Step, Stop, example};
 use super::{Outcome, Settings, Trial, requests};
 use fc_reflect::{FrameId, Packing, Reflector};
-use fc_spec::model::{Kind, Model, Operation, Side, Text};
+use fc_spec::model::{Effect, Kind, Model, Operation, Side, Text};
 use fc_spec::text;
 
 /// A device and the commands that may be sent to it.
@@ -121,9 +121,7 @@ async fn all(reflector: &Reflector<'_>, settings: &Settings, run: &mut Run<'_>) 
             name = &command.name
         );
         if !is_allowed(&command) {
-            let effect = command
-                .effect()
-                .map_or("unknown", fc_spec::model::Effect::name);
+            let effect = command.effect().unwrap_or(Effect::Unknown).name();
             let reason = text!(
                 "影响为 `{effect}`，没有允许",
                 "its effect is `{effect}`, which is not allowed"

@@ -190,7 +190,7 @@ fn release() -> Model {
 }
 
 #[test]
-fn each_scenario_of_the_repository_can_be_met_and_broken() {
+fn scenarios_are_met_and_broken() {
     let model = &release();
     let scenarios = scenarios(model);
     assert!(scenarios.len() >= 20, "{} scenarios", scenarios.len());
