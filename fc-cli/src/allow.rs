@@ -1,9 +1,10 @@
 //! The option `--allow`.
 
 use clap::ValueEnum;
-use fc_spec::model::Effect;
+use fc_spec::model::{Effect, Kind, Operation, Side};
 
-use crate::lang::both;
+use crate::lang::{both, said};
+use crate::outcome::Failure;
 
 /// The largest effect that a command may have. The order is that of the danger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -31,4 +32,26 @@ impl Allowed {
             Self::Motion => "--allow motion",
         }
     }
+}
+
+/// Refuses an operation with a larger effect than allowed. An unknown effect counts as a motion.
+pub fn check(operation: Option<&Operation>, allowed: Option<Allowed>) -> Result<(), Failure> {
+    let effect = match operation {
+        Some(operation) if operation.kind() != Kind::Stream => operation.effect(),
+        // Receiving changes nothing.
+        Some(operation) if operation.sender == Side::Robot => Some(Effect::Read),
+        Some(_) | None => None,
+    };
+    let effect = effect.unwrap_or(Effect::Unknown);
+    let Some(needed) = Allowed::needed(effect).filter(|needed| allowed < Some(*needed)) else {
+        return Ok(());
+    };
+    let name = operation.map_or("--raw", |operation| &operation.name);
+    let effect = effect.name();
+    let option = needed.option();
+    Err(said!(
+        "`{name}` 的影响是 `{effect}`，没有发送；确定要发送就加 `{option}`",
+        "`{name}` has the effect `{effect}` and was not sent; add `{option}` to send it"
+    )
+    .into())
 }

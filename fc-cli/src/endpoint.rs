@@ -5,7 +5,12 @@ use std::net::{Ipv6Addr, SocketAddr};
 use fc_spec::model::Model;
 use fc_workshop::listen::{ListenError, Listeners};
 
-use crate::lang::both;
+use crate::lang::{both, said};
+use crate::outcome::Failure;
+
+/// Open files of the program besides its connections.
+#[cfg(unix)]
+const OTHER_FILES: u64 = 64;
 
 /// Options that name the ports to listen on.
 #[derive(Debug, clap::Args)]
@@ -39,6 +44,50 @@ impl Ports {
         let data_port = self.data_port.unwrap_or(ports.data.number);
         Listeners::bind(&self.host, command_port, data_port).await
     }
+
+    /// Listens on free ports for a number of robots.
+    pub async fn listen_often(&self, count: u16) -> Result<Vec<Listeners>, Failure> {
+        let has_port = |port: Option<u16>| port.is_some_and(|port| port != 0);
+        if has_port(self.command_port) || has_port(self.data_port) {
+            return Err(said!(
+                "--count 大于 1 时，每台机器人使用任意空闲端口；去掉端口选项",
+                "with --count above 1, each robot has any free ports; leave out the options for ports"
+            )
+            .into());
+        }
+        allow_open_files(count)?;
+        let mut robots = Vec::new();
+        for _ in 0..count {
+            robots.push(Listeners::bind(&self.host, 0, 0).await?);
+        }
+        Ok(robots)
+    }
+}
+
+/// Raises the limit of open files to the need of some robots: two ports and two connections each.
+#[cfg(unix)]
+fn allow_open_files(robots: u16) -> Result<(), Failure> {
+    use nix::sys::resource::{Resource, getrlimit, setrlimit};
+
+    let needed = u64::from(robots) * 4 + OTHER_FILES;
+    let (soft, hard) = getrlimit(Resource::RLIMIT_NOFILE)?;
+    if soft >= needed {
+        return Ok(());
+    }
+    if hard < needed {
+        return Err(said!(
+            "{robots} 台机器人需要打开 {needed} 个文件，系统允许 {hard} 个；提高上限（`ulimit -Hn`），或减小 --count",
+            "{robots} robots need {needed} open files, and the system allows {hard}; raise the limit (`ulimit -Hn`), or lower --count"
+        )
+        .into());
+    }
+    Ok(setrlimit(Resource::RLIMIT_NOFILE, needed, hard)?)
+}
+
+/// Windows has no such limit.
+#[cfg(not(unix))]
+fn allow_open_files(_robots: u16) -> Result<(), Failure> {
+    Ok(())
 }
 
 /// Returns the line that names the listening ports.

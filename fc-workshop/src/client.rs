@@ -34,6 +34,12 @@ pub enum ClientError {
 }
 
 impl ClientError {
+    /// Returns `true` if the connection has ended.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Ended(_))
+    }
+
     /// Returns the message in both languages.
     #[must_use]
     pub fn text(&self) -> Text {
@@ -184,6 +190,18 @@ impl<'m> Client<'m> {
     /// [`ClientError::Ended`].
     pub async fn send(&mut self, frame: &[u8]) -> Result<(), ClientError> {
         self.connection.send(frame);
+        self.finish().await
+    }
+
+    /// Writes the last acknowledgements, and closes the connection.
+    ///
+    /// # Errors
+    /// [`ClientError::Ended`].
+    pub async fn close(mut self) -> Result<(), ClientError> {
+        self.finish().await
+    }
+
+    async fn finish(&mut self) -> Result<(), ClientError> {
         let finished = self.connection.finish().await;
         finished.map_err(|error| ClientError::Ended(End::Io(error)))
     }

@@ -4,6 +4,7 @@
 //! facts come from the model, so a tool uses an edited spec at once.
 
 pub mod answer;
+pub mod app;
 pub mod arguments;
 pub mod capture;
 pub mod certify;

@@ -3,8 +3,13 @@
 use fc_spec::model::Text;
 use fc_spec::text;
 use std::net::SocketAddr;
+use std::time::Duration;
 use std::{fmt, io};
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::sleep;
+
+/// The time before the next attempt to accept a connection.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// The reason why nothing listens.
 #[derive(Debug)]
@@ -71,6 +76,22 @@ impl Listeners {
         let commands = self.commands.local_addr().map_err(ListenError::System)?;
         let data = self.data.local_addr().map_err(ListenError::System)?;
         Ok((commands, data))
+    }
+}
+
+/// Waits for the next connection. Its small frames are sent at once.
+///
+/// An error, such as too many open files, may last, so the next attempt follows after a pause.
+pub(crate) async fn accept(listener: &TcpListener) -> TcpStream {
+    loop {
+        match listener.accept().await {
+            Ok((stream, _)) => {
+                // Without it, small frames only travel later.
+                let _ = stream.set_nodelay(true);
+                return stream;
+            }
+            Err(_) => sleep(PAUSE).await,
+        }
     }
 }
 

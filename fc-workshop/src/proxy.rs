@@ -9,7 +9,7 @@ use crate::capture::Flow;
 use crate::decode::{Decoder, Record};
 use crate::facts;
 use crate::fault::{Delivery, Fault, FaultKind, Faults};
-use crate::listen::Listeners;
+use crate::listen::{self, Listeners};
 use crate::stream::FrameStream;
 use fc_reflect::{FrameId, Reflector};
 use futures_util::stream::{FuturesUnordered, StreamExt as _};
@@ -81,17 +81,13 @@ pub async fn serve<'m>(
     loop {
         tokio::select! {
             () = &mut end => return proxy.watch.borrow_mut().finish(),
-            accepted = listeners.commands.accept(), if links.len() < most => {
-                if let Ok((app, _)) = accepted {
-                    count += 1;
-                    links.push(proxy.link(app, &settings.commands, count));
-                }
+            app = listen::accept(&listeners.commands), if links.len() < most => {
+                count += 1;
+                links.push(proxy.link(app, &settings.commands, count));
             }
-            accepted = listeners.data.accept(), if links.len() < most => {
-                if let Ok((app, _)) = accepted {
-                    count += 1;
-                    links.push(proxy.link(app, &settings.data, count));
-                }
+            app = listen::accept(&listeners.data), if links.len() < most => {
+                count += 1;
+                links.push(proxy.link(app, &settings.data, count));
             }
             Some(ended) = links.next(), if !links.is_empty() => ended?,
         }
@@ -186,10 +182,8 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
                 return (watch.sink)(Event::Unreachable(robot, &error));
             }
         };
-        for stream in [&app, &robot] {
-            // Without it, small frames only travel later.
-            let _ = stream.set_nodelay(true);
-        }
+        // Without it, small frames only travel later.
+        let _ = robot.set_nodelay(true);
         let (Ok(from), Ok(to)) = (app.peer_addr(), robot.peer_addr()) else {
             return Ok(());
         };

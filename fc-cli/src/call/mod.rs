@@ -1,7 +1,7 @@
 //! `fcproto call`.
 
 mod session;
-mod show;
+pub mod show;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,11 +9,11 @@ use std::time::Duration;
 use clap::ValueEnum;
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Reflector};
-use fc_spec::model::{Effect, Kind, Model, Operation, Side, Value};
+use fc_spec::model::{Kind, Model, Operation, Side, Value};
 use fc_workshop::arguments::{Arguments, json};
 use fc_workshop::facts;
 
-use crate::allow::Allowed;
+use crate::allow::{self, Allowed};
 use crate::help::{Help, Part};
 use crate::input;
 use crate::lang::{both, lang, said};
@@ -192,7 +192,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Some(raw) => raw_request(model, raw)?,
         None => named_request(&reflector, options)?,
     };
-    allow(request.operation, options.allow)?;
+    allow::check(request.operation, options.allow)?;
     let call = session::Call {
         reflector: &reflector,
         to: &options.to,
@@ -337,26 +337,4 @@ fn bytes(hex: &str) -> Option<Vec<u8>> {
     }
     let byte = |pair: &[u8]| pair.iter().fold(0, |byte, digit| byte << 4 | digit);
     Some(pairs.map(byte).collect())
-}
-
-/// Refuses an operation with a larger effect than allowed. An unknown effect counts as a motion.
-fn allow(operation: Option<&Operation>, allowed: Option<Allowed>) -> Result<(), Failure> {
-    let effect = match operation {
-        Some(operation) if operation.kind() != Kind::Stream => operation.effect(),
-        // Receiving changes nothing.
-        Some(operation) if operation.sender == Side::Robot => Some(Effect::Read),
-        Some(_) | None => None,
-    };
-    let effect = effect.unwrap_or(Effect::Unknown);
-    let Some(needed) = Allowed::needed(effect).filter(|needed| allowed < Some(*needed)) else {
-        return Ok(());
-    };
-    let name = operation.map_or("--raw", |operation| &operation.name);
-    let effect = effect.name();
-    let option = needed.option();
-    Err(said!(
-        "`{name}` 的影响是 `{effect}`，没有发送；确定要发送就加 `{option}`",
-        "`{name}` has the effect `{effect}` and was not sent; add `{option}` to send it"
-    )
-    .into())
 }

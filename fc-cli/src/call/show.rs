@@ -46,6 +46,14 @@ impl Format {
                 ("body", body(frame)),
             ]);
         }
+        let nodes = message.body.as_deref().unwrap_or_default();
+        let summary = self.summary(&name, outcome);
+        format!("{summary}\n{}", table(nodes, self.lang))
+    }
+
+    /// Returns the name and the result of a response.
+    pub fn summary(self, name: &str, outcome: &Outcome<'_>) -> String {
+        let result = outcome.known.map_or("", |known| &known.name);
         let code = outcome.code.map(|code| format!("  {code} {result}"));
         // The robot sends the Chinese text of the result, sometimes with a reason behind it.
         let known = outcome.known.and_then(|known| {
@@ -59,8 +67,7 @@ impl Format {
             format!("  {text}")
         };
         let code = code.unwrap_or_default();
-        let nodes = message.body.as_deref().unwrap_or_default();
-        format!("{name}{code}{text}\n{}", table(nodes, self.lang))
+        format!("{name}{code}{text}")
     }
 
     /// Shows the times of several calls. In JSON, each response has its own.

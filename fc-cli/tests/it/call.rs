@@ -148,7 +148,7 @@ fn a_robot_that_is_not_there_gives_status_4() {
     let project = Project::new();
     let mock = Robot::mock(&project, &[]);
     let address = mock.commands.clone();
-    assert_eq!(mock.stop("-TERM").0, Some(0));
+    mock.stop("-TERM").expect(0);
     let run = project
         .fc(&["call", "get_level", "--to", &address])
         .expect(4);

@@ -1,14 +1,15 @@
 //! `fcproto mock`.
 
-use crate::support::Project;
 use crate::support::robot::Robot;
+use crate::support::{Project, command};
+use std::io::{BufRead as _, BufReader};
+use std::process::{Command, Stdio};
 
 #[test]
 fn a_mock_ends_on_each_signal() {
     let project = Project::new();
     for signal in ["-INT", "-TERM"] {
-        let (status, _) = Robot::mock(&project, &[]).stop(signal);
-        assert_eq!(status, Some(0), "{signal}");
+        Robot::mock(&project, &[]).stop(signal).expect(0);
     }
 }
 
@@ -21,4 +22,170 @@ fn a_taken_port_is_an_error_that_names_it() {
         .fc(&["mock", "--command-port", port, "--data-port", "0"])
         .expect(2);
     assert!(run.stderr.contains(&mock.commands), "{run:?}");
+}
+
+/// A scenario, the calls of an app that does not meet it, and the error of the mock.
+const FAULTY: &[(&str, &[&str], &str)] = &[
+    (
+        "on: [{ request: probe, reports: [alarm] }]\n\
+         expect: [probe, { acknowledged: alarm }]\nwithin_ms: 1000\n",
+        &["probe", "--allow", "motion"],
+        "the app did not acknowledge `alarm`",
+    ),
+    (
+        "on: [{ request: get_level, times: 1, refuse: wrong }]\n\
+         expect: [get_level, get_level]\nwithin_ms: 1000\n",
+        &["get_level"],
+        "the app did not send `get_level`",
+    ),
+    (
+        "expect: [get_level]\nnever: [probe]\n",
+        &["probe", "--allow", "motion"],
+        "the app sent `probe`, which it must not send",
+    ),
+];
+
+#[test]
+fn a_faulty_app_is_caught() {
+    let project = Project::new();
+    for (scenario, call, error) in FAULTY {
+        project.write("s.yaml", scenario);
+        let mock = Robot::mock(
+            &project,
+            &["--scenario", "s.yaml", "--expect", "--lang", "en"],
+        );
+        // The robot may end before its response.
+        mock.call(&project, call);
+        let run = mock.end().expect(1);
+        assert!(run.stderr.contains(error), "{error}: {run:?}");
+    }
+}
+
+#[test]
+fn an_app_and_a_robot_meet_the_same_scenario() {
+    let project = Project::new();
+    for (scenario, _, _) in FAULTY {
+        project.write("s.yaml", scenario);
+        let options = [
+            "--scenario",
+            "s.yaml",
+            "--expect",
+            "--pace",
+            "1",
+            "--lang",
+            "en",
+        ];
+        let mock = Robot::mock(&project, &options);
+        let app = mock.app(&project, &[&options[..], &["--allow", "motion"]].concat());
+        assert!(
+            app.expect(0)
+                .stdout
+                .ends_with("the robot did what the scenario expects\n")
+        );
+        let run = mock.end().expect(0);
+        assert!(
+            run.stdout.contains("the app did what the scenario expects"),
+            "{run:?}"
+        );
+    }
+}
+
+#[test]
+fn an_app_finds_deviations_of_a_robot() {
+    let project = Project::new();
+    let mock = Robot::mock(&project, &[]);
+    let options = ["--expect", "--pace", "1", "--lang", "en"];
+    // Without a scenario, it sends each command that only reads.
+    let run = mock.app(&project, &options).expect(0);
+    assert!(run.stdout.contains("get_level  0 fine"), "{run:?}");
+    assert!(!run.stdout.contains("probe"), "{run:?}");
+    for (scenario, deviation) in [
+        (
+            "on: [{ request: get_level, refuse: wrong }]\nexpect: [get_level]\n",
+            "`get_level`: expected result 3, found 0",
+        ),
+        (
+            "on: [{ request: get_level, answer: { level: 7 } }]\nexpect: [get_level]\n",
+            "`get_level`: the response lacks {\"level\":7}",
+        ),
+        (
+            "on: [{ request: get_level, silent: true }]\nexpect: [get_level]\n",
+            "`get_level`: a response, and the scenario has none",
+        ),
+        (
+            "expect: [{ acknowledged: level_changed }]\nwithin_ms: 50\n",
+            "`level_changed`: the robot has sent nothing for",
+        ),
+    ] {
+        project.write("s.yaml", scenario);
+        let scenario = ["--scenario", "s.yaml"];
+        let run = mock
+            .app(&project, &[&options[..], &scenario].concat())
+            .expect(1);
+        assert!(run.stderr.contains(deviation), "{deviation}: {run:?}");
+    }
+}
+
+#[test]
+fn an_app_sends_only_what_is_allowed() {
+    let project = Project::new();
+    project.write("s.yaml", "expect: [get_level, probe]\n");
+    // It is refused before a connection is made, so no robot is needed.
+    let app = [
+        "mock",
+        "--as",
+        "app",
+        "--to",
+        "127.0.0.1:9",
+        "--scenario",
+        "s.yaml",
+    ];
+    let run = project.fc(&app).expect(2);
+    assert!(run.stderr.contains("--allow motion"), "{run:?}");
+    project.fc(&["mock", "--as", "app"]).expect(2);
+    project.fc(&["mock", "--to", "127.0.0.1:9"]).expect(2);
+}
+
+#[test]
+fn many_robots_have_their_ports() {
+    let project = Project::new();
+    // Fewer open files than the robots need, until the mock raises its limit.
+    let mut mock = Command::new("sh")
+        .args(["-c", "ulimit -Sn 60 && exec \"$0\" mock --count 50"])
+        .arg(command(&[]).get_program())
+        .current_dir(project.path(""))
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("a shell");
+    let lines = BufReader::new(mock.stdout.take().expect("its output")).lines();
+    let lines: Vec<String> = lines.take(50).map(|line| line.expect("a line")).collect();
+    for line in lines.iter().step_by(7) {
+        let robot = line.split_whitespace().nth(1).expect("an address");
+        project.fc(&["call", "get_level", "--to", robot]).expect(0);
+    }
+    mock.kill().expect("it still runs");
+    mock.wait().expect("its end");
+}
+
+#[test]
+fn robots_without_files_or_ports_are_an_error() {
+    let project = Project::new();
+    let few = Command::new("sh")
+        .args([
+            "-c",
+            "ulimit -n 60 && exec \"$0\" mock --count 50 --lang en",
+        ])
+        .arg(command(&[]).get_program())
+        .current_dir(project.path(""))
+        .output()
+        .expect("a shell");
+    let errors = String::from_utf8(few.stderr).expect("UTF-8");
+    assert!(
+        errors.contains("the system allows 60; raise the limit"),
+        "{errors}"
+    );
+    let run = project
+        .fc(&["mock", "--count", "2", "--data-port", "7"])
+        .expect(2);
+    assert!(run.stderr.contains("--count"), "{run:?}");
 }

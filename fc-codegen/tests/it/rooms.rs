@@ -178,6 +178,7 @@ const CRATES: &[Crate] = &[
             "connection",
             "client",
             "scenario",
+            "app",
             "mock",
             "capture",
             "decode",

@@ -10,11 +10,13 @@ mod streams;
 
 use crate::connection::{Connection, Event};
 use crate::facts;
-use crate::listen::{ListenError, Listeners};
+use crate::listen::{self, ListenError, Listeners};
 use crate::scenario::{Scenario, Verdict};
 use apps::{Apps, Report};
 use fc_reflect::Reflector;
 use fc_spec::model::Model;
+use futures_util::FutureExt as _;
+use futures_util::future::join_all;
 use futures_util::stream::{FuturesUnordered, StreamExt as _};
 use robot::{Answer, Robot};
 use std::cell::RefCell;
@@ -57,15 +59,33 @@ impl Default for Settings {
     }
 }
 
-/// Plays the robot of a model until `end` is ready, or until its scenario ends. Returns the verdict of a scenario.
+/// Plays a robot of the model on each pair of ports until `end` is ready, or until their scenarios end. Returns the verdict
+/// of a scenario: the first that is not met, or that all are met.
 pub async fn serve(
     model: &Model,
+    settings: &Settings,
+    robots: Vec<Listeners>,
+    end: impl Future<Output = ()>,
+) -> Option<Verdict> {
+    let reflector = &Reflector::new(model);
+    let end = end.shared();
+    let robots = robots.into_iter();
+    let verdicts =
+        join_all(robots.map(|listeners| one(reflector, settings, listeners, end.clone())));
+    let mut verdicts: Vec<_> = verdicts.await.into_iter().flatten().collect();
+    let missed = verdicts.iter().position(|verdict| *verdict != Verdict::Met);
+    let shown = missed.unwrap_or(0);
+    (shown < verdicts.len()).then(|| verdicts.swap_remove(shown))
+}
+
+/// Plays one robot.
+async fn one(
+    reflector: &Reflector<'_>,
     settings: &Settings,
     listeners: Listeners,
     end: impl Future<Output = ()>,
 ) -> Option<Verdict> {
-    let reflector = &Reflector::new(model);
-    let limits = facts::limits(model);
+    let limits = facts::limits(reflector.model());
     let stage = &Stage {
         reflector,
         robot: RefCell::new(Robot::new(reflector, settings)),
@@ -95,15 +115,11 @@ pub async fn serve(
         tokio::select! {
             () = &mut end => return verdict,
             () = until(over), if over.is_some() => return verdict,
-            accepted = listeners.commands.accept(), if talks.len() < limits.connections => {
-                if let Ok((stream, _)) = accepted {
-                    talks.push(stage.talk(stream));
-                }
+            app = listen::accept(&listeners.commands), if talks.len() < limits.connections => {
+                talks.push(stage.talk(app));
             }
-            accepted = listeners.data.accept(), if data.len() < limits.connections => {
-                if let Ok((stream, _)) = accepted {
-                    data.push(stage.stream(stream));
-                }
+            app = listen::accept(&listeners.data), if data.len() < limits.connections => {
+                data.push(stage.stream(app));
             }
             Some(()) = talks.next(), if !talks.is_empty() => {}
             Some(()) = data.next(), if !data.is_empty() => {}
@@ -146,8 +162,6 @@ impl<'m> Stage<'m> {
 
     /// Talks with one app until it ends the connection.
     async fn talk(&self, stream: TcpStream) {
-        // Without it, small frames only travel later.
-        let _ = stream.set_nodelay(true);
         let mut connection: Connection<'m, _, ()> = Connection::new(self.reflector, stream);
         let mut reports = self.apps.join();
         let mut is_greeted = false;
@@ -214,8 +228,6 @@ impl<'m> Stage<'m> {
 
     /// Sends streams to one app until it ends the connection.
     async fn stream(&self, stream: TcpStream) {
-        // Without it, small frames only travel later.
-        let _ = stream.set_nodelay(true);
         let mut connection: Connection<'m, _, ()> = Connection::new(self.reflector, stream);
         let mut frames = self.data.join();
         for frame in self.streams.borrow().latest() {
@@ -262,7 +274,7 @@ impl Mock {
         let (commands, data) = listeners.addresses()?;
         let (stop, stopped) = oneshot::channel::<()>();
         let run = move || {
-            runtime.block_on(serve(&model, &settings, listeners, async {
+            runtime.block_on(serve(&model, &settings, vec![listeners], async {
                 // A dropped sender stops the mock, too.
                 let _ = stopped.await;
             }))

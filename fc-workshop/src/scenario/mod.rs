@@ -18,6 +18,9 @@ pub(crate) use play::Play;
 use fc_spec::model::{Text, Value};
 use std::time::Duration;
 
+/// Time in which the app must have caused all events, without `within_ms`.
+const WITHIN: Duration = Duration::from_secs(30);
+
 /// A scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
@@ -29,6 +32,22 @@ pub struct Scenario {
     pub never: Vec<String>,
     /// Time in which the app must have caused all events.
     pub within: Duration,
+}
+
+impl Scenario {
+    /// Returns the scenario of an app that sends these commands, each with its example.
+    #[must_use]
+    pub fn of_commands(names: impl IntoIterator<Item = String>) -> Self {
+        let expect = names.into_iter();
+        Self {
+            rules: Vec::new(),
+            expect: expect
+                .map(|name| Expected::Request(name, Value::Null))
+                .collect(),
+            never: Vec::new(),
+            within: WITHIN,
+        }
+    }
 }
 
 /// A rule for the requests of a command.
@@ -122,7 +141,7 @@ impl Verdict {
 }
 
 /// Returns `true` if the value has all these values. Null fits any value.
-fn fits(with: &Value, value: &Value) -> bool {
+pub(crate) fn fits(with: &Value, value: &Value) -> bool {
     match (with, value) {
         (Value::Null, _) => true,
         (Value::Object(keys), _) => keys

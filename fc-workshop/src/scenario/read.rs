@@ -10,8 +10,6 @@ use fc_spec::syntax::{Entry, Node, NodeKind, Style, parse};
 use fc_spec::text;
 use std::time::Duration;
 
-/// Time in which the app must have caused all events, without `within_ms`.
-const WITHIN: Duration = Duration::from_secs(30);
 /// The longest time in a scenario, in milliseconds.
 const LONGEST_MS: u64 = 86_400_000;
 
@@ -83,12 +81,7 @@ impl<'m> Reader<'_, 'm> {
     }
 
     fn scenario(&mut self, root: Node<'_>) -> Scenario {
-        let mut scenario = Scenario {
-            rules: Vec::new(),
-            expect: Vec::new(),
-            never: Vec::new(),
-            within: WITHIN,
-        };
+        let mut scenario = Scenario::of_commands([]);
         let keys = ["zh", "en", "on", "expect", "never", "within_ms"];
         self.entries(root, &keys, |reader, key, node| match key {
             "on" => scenario.rules = reader.list(node, Self::rule),

@@ -1,23 +1,19 @@
 //! Reading scenarios.
 
 use crate::support::{root, small};
-use fc_reflect::sample::Profile;
-use fc_reflect::{Direction, Reflector};
+use fc_reflect::Reflector;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::model::{Dump, Lang, Model, Operation, Value};
 use fc_spec::source::Sources;
-use fc_workshop::client::{Client, ClientError};
+use fc_workshop::app::{self, App};
 use fc_workshop::mock::{Mock, Settings};
 use fc_workshop::run::block_on;
 use fc_workshop::scenario::{Expected, Scenario, Verdict};
-use std::sync::Arc;
+use std::future::pending;
 use std::time::Duration;
 
-/// A test fails after this time, instead of hanging.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-/// The wait for a response that may not come.
-const WAIT: Duration = Duration::from_millis(900);
+/// The time that a command waits for its response.
+const WAIT: Duration = Duration::from_secs(1);
 
 /// A scenario of the small spec, and its errors: place and message.
 const FAULTY: &[(&str, &[&str])] = &[
@@ -101,87 +97,32 @@ fn scenarios(model: &Model) -> Vec<(String, Scenario)> {
     scenarios
 }
 
-/// An app that causes events in their order. A good one calls again over a new connection after a loss, and
-/// acknowledges all reports; another one gives up.
-struct App<'m> {
-    is_good: bool,
-    reflector: &'m Reflector<'m>,
-    address: String,
-    client: Option<Client<'m>>,
-}
-
-impl<'m> App<'m> {
-    async fn client(&mut self) -> &mut Client<'m> {
-        if self.client.is_none() {
-            let client = Client::connect(self.reflector, &self.address, PATIENCE).await;
-            self.client = Some(client.unwrap());
-        }
-        self.client.as_mut().unwrap()
-    }
-
-    /// Sends a command with the example and these values. Any end of the call is fine.
-    async fn call(&mut self, name: &str, with: &Value) {
-        let model = self.reflector.model();
-        let operation = model.operation(name).unwrap();
-        let samples = self.reflector.samples();
-        let mut message = samples.message(operation, Direction::Request, Profile::Example);
-        if let Value::Object(entries) = with {
-            for (key, value) in entries {
-                message.set(key, value.clone());
-            }
-        }
-        let id = self.reflector.id(operation, Direction::Request, 0).unwrap();
-        let data: Arc<[u8]> = message.to_string().into_bytes().into();
-        for _ in 0..if self.is_good { 2 } else { 1 } {
-            let client = self.client().await;
-            let call = client.call(id.kind, id.code, Arc::clone(&data), WAIT);
-            let Err(ClientError::Ended(_)) = call.await else {
-                break;
-            };
-            self.client = None;
-        }
-    }
-
-    async fn cause(&mut self, event: &Expected) {
-        match event {
-            Expected::Request(name, with) => self.call(name, with).await,
-            Expected::Acknowledgement(report) => loop {
-                let frame = self.client().await.report(PATIENCE).await.unwrap();
-                if frame.operation.is_some_and(|it| it.name == *report) {
-                    break;
-                }
-            },
-        }
-    }
-}
-
-/// Plays a scenario with an app that causes these events. Returns the verdict.
-fn play(model: &Model, scenario: Scenario, events: &[Expected], is_good: bool) -> Option<Verdict> {
+/// Plays a scenario with an app that causes these events. Returns the verdict, and the number of deviations of the mock.
+fn play(model: &Model, scenario: &Scenario, events: &[Expected]) -> (Option<Verdict>, usize) {
     let settings = Settings {
-        scenario: Some(scenario),
+        scenario: Some(scenario.clone()),
         expect: true,
         ignores_preconditions: true,
         ..Settings::default()
     };
     let mock = Mock::start(model.clone(), settings).unwrap();
+    let settings = app::Settings {
+        commands: mock.commands().to_string(),
+        data: mock.data().to_string(),
+        pace: Duration::ZERO,
+        timeout: WAIT,
+        expect: true,
+    };
+    let part = Scenario {
+        expect: events.to_vec(),
+        ..scenario.clone()
+    };
     let reflector = Reflector::new(model);
-    block_on(async {
-        let mut app = App {
-            is_good,
-            reflector: &reflector,
-            address: mock.commands().to_string(),
-            client: None,
-        };
-        for event in events {
-            app.cause(event).await;
-        }
-        // An acknowledgement is written while the next event is awaited.
-        if let Some(client) = app.client.as_mut().filter(|_| is_good) {
-            while client.report(WAIT).await.is_ok() {}
-        }
-    })
-    .unwrap();
-    mock.verdict()
+    let deviations = block_on(async {
+        let app = App::connect(&reflector, &settings).await.unwrap();
+        app.run(&part, &mut |_| Ok(()), pending()).await.unwrap()
+    });
+    (mock.verdict(), deviations.unwrap())
 }
 
 fn release() -> Model {
@@ -198,20 +139,20 @@ fn scenarios_are_met_and_broken() {
         for (name, scenario) in scenarios {
             scope.spawn(move || {
                 let events = &scenario.expect;
-                let verdict = play(model, scenario.clone(), events, true);
-                assert_eq!(verdict, Some(Verdict::Met), "{name}");
+                let played = play(model, &scenario, events);
+                assert_eq!(played, (Some(Verdict::Met), 0), "{name}");
 
                 let (_, before) = events.split_last().unwrap();
                 let short = Scenario {
                     within: Duration::from_secs(3),
                     ..scenario.clone()
                 };
-                let verdict = play(model, short, before, false);
+                let (verdict, _) = play(model, &short, before);
                 assert!(matches!(verdict, Some(Verdict::Missing(_))), "{name}");
 
                 if let Some(never) = scenario.never.first() {
                     let forbidden = [Expected::Request(never.clone(), Value::Null)];
-                    let verdict = play(model, scenario.clone(), &forbidden, false);
+                    let (verdict, _) = play(model, &scenario, &forbidden);
                     assert_eq!(verdict, Some(Verdict::Forbidden(never.clone())), "{name}");
                 }
             });

@@ -1,7 +1,7 @@
 //! A running `fcproto mock` or `fcproto proxy`.
 
 use super::{Project, Run, command};
-use std::io::{BufRead as _, BufReader, Read as _};
+use std::io::{self, BufRead as _, BufReader};
 use std::process::{Child, ChildStdout, Command, Stdio};
 
 /// A program that listens as a robot on free ports. It ends when it is dropped.
@@ -34,6 +34,7 @@ impl Robot {
             .current_dir(project.path(""))
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
             .spawn()
             .expect("the command can be run");
         let mut stdout = BufReader::new(child.stdout.take().expect("its output"));
@@ -51,24 +52,48 @@ impl Robot {
         }
     }
 
+    /// Runs `fcproto mock --as app` against it.
+    pub fn app(&self, project: &Project, args: &[&str]) -> Run {
+        let (_, data_port) = self.data.rsplit_once(':').expect("a port");
+        let to = [
+            "mock",
+            "--as",
+            "app",
+            "--to",
+            &self.commands,
+            "--to-data-port",
+            data_port,
+        ];
+        project.fc(&[&to, args].concat())
+    }
+
     /// Runs `fcproto call` against it.
     pub fn call(&self, project: &Project, args: &[&str]) -> Run {
         project.fc(&[&["call", "--to", &self.commands], args].concat())
     }
 
-    /// Sends a signal. Returns the exit status and the output after the first line.
-    pub fn stop(mut self, signal: &str) -> (Option<i32>, String) {
+    /// Sends a signal and waits for the end.
+    pub fn stop(self, signal: &str) -> Run {
         let id = self.child.id().to_string();
         let sent = Command::new("kill").args([signal, &id]).status();
         assert!(sent.is_ok_and(|sent| sent.success()));
         self.end()
     }
 
-    /// Waits for the end. Returns the exit status and the output after the first line.
-    pub fn end(&mut self) -> (Option<i32>, String) {
-        let mut rest = String::new();
-        self.stdout.read_to_string(&mut rest).expect("its output");
-        (self.child.wait().expect("its end").code(), rest)
+    /// Waits for the end. The output lacks the first line.
+    pub fn end(mut self) -> Run {
+        let stdout = io::read_to_string(&mut self.stdout).expect("its output");
+        let errors = self.child.stderr.take().expect("its errors");
+        Run {
+            stdout,
+            stderr: io::read_to_string(errors).expect("its errors"),
+            status: self
+                .child
+                .wait()
+                .expect("its end")
+                .code()
+                .expect("a status"),
+        }
     }
 }
 

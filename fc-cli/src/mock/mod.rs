@@ -1,12 +1,16 @@
 //! `fcproto mock`.
 
+mod app;
+
 use std::path::PathBuf;
 use std::time::Duration;
 
+use clap::ValueEnum;
 use fc_reflect::Reflector;
 use fc_spec::diagnostic::Faults;
-use fc_spec::model::{Kind, Operation};
+use fc_spec::model::{Kind, Model, Operation};
 use fc_spec::source::Sources;
+use fc_workshop::listen::Listeners;
 use fc_workshop::mock::{Settings, serve};
 use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::scenario::{Scenario, Verdict};
@@ -23,8 +27,26 @@ use crate::spec::{Spec, show_faults};
 /// Options of `fcproto mock`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
+    #[arg(
+        long = "as",
+        value_name = "SIDE",
+        default_value = "robot",
+        requires_if("app", "to"),
+        help = both("模拟哪一方", "The side to play")
+    )]
+    side: Side,
+    #[command(flatten)]
+    app: app::AppOptions,
     #[command(flatten)]
     ports: Ports,
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "1",
+        value_parser = clap::value_parser!(u16).range(1..),
+        help = both("机器人的台数，各有自己的端口", "Number of robots, each with its ports")
+    )]
+    count: u16,
     #[arg(
         long,
         value_name = "MS",
@@ -47,20 +69,31 @@ pub struct Options {
     #[arg(
         long,
         value_name = "FILE",
-        help = both("按场景文件响应", "Respond as a scenario says")
+        help = both("按场景文件响应或发送", "Respond or send as a scenario says")
     )]
     scenario: Option<PathBuf>,
     #[arg(
         long,
-        requires = "scenario",
-        help = both("场景的期望满足时以 0 退出，否则以 1 退出", "Exit with 0 once the app has met the scenario, otherwise with 1")
+        help = both("对方符合场景时以 0 退出，否则以 1 退出", "Exit with 0 once the other side has met the scenario, otherwise with 1")
     )]
     expect: bool,
 }
 
+/// The side that is played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Side {
+    #[value(help = both("机器人", "The robot"))]
+    Robot,
+    #[value(help = both("app，连接 `--to` 的机器人", "The app, which connects to the robot of `--to`"))]
+    App,
+}
+
 pub fn help() -> Help {
     Help {
-        summary: both("按规范模拟一台机器人", "Play a robot from the spec"),
+        summary: both(
+            "按规范模拟机器人或 app",
+            "Play a robot or an app from the spec",
+        ),
         details: vec![
             Part::Text(both(
                 "模拟端用规范中的示例响应指令，以协议的结果码拒绝不合规范的请求，以及前提不满足的指令。指令引起的过程从起始状态走到最后，\
@@ -70,6 +103,13 @@ pub fn help() -> Help {
                  its last, with a report for each. Values that were set can be read. Reports without an acknowledgement are repeated as the \
                  spec demands. The first line on standard output has the addresses of both ports. Ctrl-C ends the mock.",
             )),
+            Part::Text(both(
+                "`--as app` 模拟 app：连接机器人的两个端口，应答上报，按 `--pace` 的间隔逐条发送 `--allow` 允许的指令；有场景时发送\
+                 场景期望的指令，并按其规则检查响应。",
+                "`--as app` plays the app. It connects to both ports of a robot, acknowledges reports, and sends each command that \
+                 `--allow` allows, one after each `--pace`. With a scenario, it sends the commands that the scenario expects, and checks \
+                 the responses by its rules.",
+            )),
             Part::Examples(vec![
                 (
                     "fcproto mock",
@@ -78,6 +118,14 @@ pub fn help() -> Help {
                 (
                     "fcproto mock --command-port 0 --data-port 0",
                     both("在任意空闲端口上", "On any free ports"),
+                ),
+                (
+                    "fcproto mock --count 1000",
+                    both("一千台机器人", "A thousand robots"),
+                ),
+                (
+                    "fcproto mock --as app --to robot.local --expect",
+                    both("检查一台机器人的全部查询", "Check all queries of a robot"),
                 ),
             ]),
         ],
@@ -95,36 +143,59 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec.show_faults()?;
         return Ok(spec.status());
     };
-    let mut settings = Settings {
-        pace: Duration::from_millis(options.pace),
-        stream_after: options.stream_after.clone(),
-        ignores_preconditions: options.no_preconditions,
-        scenario: None,
-        expect: options.expect,
+    let reflector = Reflector::new(model);
+    let scenario = match &options.scenario {
+        Some(file) => {
+            let text = input::text(file)?;
+            let sources = Sources::from_texts([(file.display().to_string(), text)]);
+            let mut faults = Faults::new();
+            let scenario = Scenario::read(&reflector, &sources, &mut faults);
+            if scenario.is_none() {
+                show_faults(&faults, &sources)?;
+                return Ok(Status::Faulty);
+            }
+            scenario
+        }
+        None => None,
     };
+    match options.side {
+        Side::App => app::run(&reflector, options, scenario),
+        Side::Robot => robot(model, options, scenario),
+    }
+}
+
+fn robot(model: &Model, options: &Options, scenario: Option<Scenario>) -> Result<Status, Failure> {
+    if options.app.to.is_some() {
+        return Err(said!("--to 需要 --as app", "--to needs --as app").into());
+    }
+    if options.expect && scenario.is_none() {
+        return Err(said!("--expect 需要 --scenario", "--expect needs --scenario").into());
+    }
     for name in &options.stream_after {
         let is_command = |operation: &Operation| operation.kind() == Kind::Command;
         if !model.operation(name).is_some_and(is_command) {
             return Err(said!("没有指令 `{name}`", "there is no command `{name}`").into());
         }
     }
-    if let Some(file) = &options.scenario {
-        let text = input::text(file)?;
-        let sources = Sources::from_texts([(file.display().to_string(), text)]);
-        let mut faults = Faults::new();
-        settings.scenario = Scenario::read(&Reflector::new(model), &sources, &mut faults);
-        if settings.scenario.is_none() {
-            show_faults(&faults, &sources)?;
-            return Ok(Status::Faulty);
-        }
-    }
+    let settings = Settings {
+        pace: Duration::from_millis(options.pace),
+        stream_after: options.stream_after.clone(),
+        ignores_preconditions: options.no_preconditions,
+        scenario,
+        expect: options.expect,
+    };
     block_on(async {
-        let listeners = options.ports.listen(model).await?;
-        let addresses = listeners.addresses()?;
+        let robots = match options.count {
+            1 => vec![options.ports.listen(model).await?],
+            count => options.ports.listen_often(count).await?,
+        };
+        let addresses = robots.iter().map(Listeners::addresses);
+        let addresses: Vec<_> = addresses.collect::<Result<_, _>>()?;
         // Before the first line, because its reader may end the mock at once.
         let mut interrupt = Interrupt::new()?;
-        print::result(&endpoint::line(addresses))?;
-        let verdict = serve(model, &settings, listeners, interrupt.next()).await;
+        let lines: String = addresses.into_iter().map(endpoint::line).collect();
+        print::result(&lines)?;
+        let verdict = serve(model, &settings, robots, interrupt.next()).await;
         let Some(verdict) = verdict.filter(|_| settings.expect) else {
             return Ok(Status::Fine);
         };

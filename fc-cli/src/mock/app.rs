@@ -1,0 +1,175 @@
+//! `fcproto mock --as app`.
+
+use std::time::Duration;
+
+use fc_reflect::{Direction, Reflector};
+use fc_spec::model::{Kind, Model, Operation, Side};
+use fc_workshop::answer::Outcome;
+use fc_workshop::app::{App, Event, Settings};
+use fc_workshop::client::ClientError;
+use fc_workshop::facts;
+use fc_workshop::run::{Interrupt, block_on};
+use fc_workshop::scenario::{Expected, Scenario};
+
+use crate::allow::{self, Allowed};
+use crate::call::show::Format;
+use crate::endpoint::{at_port, with_port};
+use crate::lang::{both, in_lang, lang, said};
+use crate::outcome::{Failure, Status};
+use crate::print;
+use crate::recording::Shown;
+
+/// Options of an app.
+#[derive(Debug, clap::Args)]
+pub struct AppOptions {
+    #[arg(
+        long,
+        value_name = "HOST[:PORT]",
+        conflicts_with_all = ["host", "command_port", "data_port", "count", "stream_after", "no_preconditions"],
+        help = both("`--as app` 连接的机器人；端口默认按规范", "Robot of `--as app`; the port is that of the spec by default")
+    )]
+    pub to: Option<String>,
+    #[arg(
+        long,
+        value_name = "PORT",
+        requires = "to",
+        help = both("该机器人的数据端口 [默认：按规范]", "Data port of that robot [default: by the spec]")
+    )]
+    to_data_port: Option<u16>,
+    #[arg(
+        long,
+        value_name = "EFFECT",
+        requires = "to",
+        help = both("允许 app 改变机器人的指令", "Allow commands of the app that change the robot")
+    )]
+    allow: Option<Allowed>,
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        default_value = "text",
+        requires = "to",
+        help = both("app 的输出格式", "Output format of the app")
+    )]
+    format: Shown,
+}
+
+/// Plays the app against a robot.
+pub fn run(
+    reflector: &Reflector<'_>,
+    options: &super::Options,
+    scenario: Option<Scenario>,
+) -> Result<Status, Failure> {
+    let model = reflector.model();
+    let app = &options.app;
+    let scenario = match scenario {
+        Some(scenario) => {
+            check(model, &scenario, app.allow)?;
+            scenario
+        }
+        None => Scenario::of_commands(allowed(model, app.allow)),
+    };
+    let ports = &model.transport.ports;
+    let to = app.to.as_deref().unwrap_or_default();
+    let settings = Settings {
+        commands: with_port(to, ports.command.number),
+        data: at_port(to, app.to_data_port.unwrap_or(ports.data.number)),
+        pace: Duration::from_millis(options.pace),
+        timeout: facts::call_timeout(model),
+        expect: options.expect,
+    };
+    block_on(async {
+        let app = match App::connect(reflector, &settings).await {
+            Ok(app) => app,
+            Err(error) => return unreachable(error),
+        };
+        let mut interrupt = Interrupt::new()?;
+        let sink = &mut |event: Event<'_, '_>| show(reflector, options.app.format, &event);
+        let deviations = app.run(&scenario, sink, interrupt.next()).await?;
+        if !options.expect {
+            return Ok(Status::Fine);
+        }
+        if deviations == 0 {
+            print::done(&said!(
+                "机器人符合场景\n",
+                "the robot did what the scenario expects\n"
+            ))?;
+            return Ok(Status::Fine);
+        }
+        Ok(Status::Faulty)
+    })?
+}
+
+fn unreachable(error: ClientError) -> Result<Status, Failure> {
+    print::failure(Failure::from(error).as_ref());
+    Ok(Status::Unanswered)
+}
+
+/// Returns the names of the commands that an app may send.
+fn allowed(model: &Model, allow: Option<Allowed>) -> impl Iterator<Item = String> {
+    let commands = model.operations.iter().filter(move |operation| {
+        operation.kind() == Kind::Command
+            && operation.sender == Side::App
+            && operation.code.value.is_some()
+            && allow::check(Some(operation), allow).is_ok()
+    });
+    commands.map(|command| command.name.clone())
+}
+
+/// Refuses a scenario with a command that is not allowed.
+fn check(model: &Model, scenario: &Scenario, allow: Option<Allowed>) -> Result<(), Failure> {
+    for expected in &scenario.expect {
+        if let Expected::Request(name, _) = expected {
+            allow::check(model.operation(name), allow)?;
+        }
+    }
+    Ok(())
+}
+
+fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::io::Result<()> {
+    let format = Format {
+        json: shown == Shown::Json,
+        lang: lang(),
+    };
+    let line = match event {
+        Event::Response(command, frame, took) => {
+            let direction = Direction::Response;
+            match reflector.message(Some(command), direction, &frame.data) {
+                Ok(message) => {
+                    let outcome = Outcome::of(reflector.model(), &message);
+                    let name = command.name.as_str();
+                    match shown {
+                        Shown::Json => {
+                            format.response(Some(name), frame, &outcome, &message, *took)
+                        }
+                        Shown::Text => format.summary(name, &outcome) + "\n",
+                    }
+                }
+                // A deviation follows.
+                Err(_) => return Ok(()),
+            }
+        }
+        Event::Pushed(frame) => match (frame.operation, shown) {
+            (Some(operation), Shown::Json) => format.pushed(operation, frame, None),
+            (Some(operation), Shown::Text) => named(operation, frame.data.len()),
+            (None, _) => format!("0x{:04X}\n", frame.id.code),
+        },
+        Event::Deviation(name, deviation) => {
+            let deviation = in_lang(deviation);
+            let text = said!("`{name}`：{deviation}", "`{name}`: {deviation}");
+            print::failure(Failure::from(text).as_ref());
+            return Ok(());
+        }
+    };
+    print::result(&line)
+}
+
+fn named(operation: &Operation, bytes: usize) -> String {
+    let (name, title) = (&operation.name, lang().text(&operation.title));
+    if operation.kind() == Kind::Report {
+        return format!("{name}  {title}\n");
+    }
+    said!(
+        "{name}  {title}  {bytes} 字节\n",
+        "{name}  {title}  {bytes} bytes\n"
+    )
+}
