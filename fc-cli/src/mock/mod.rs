@@ -52,7 +52,7 @@ pub struct Options {
         value_name = "MS",
         default_value = "500",
         value_parser = clap::value_parser!(u64).range(1..=3_600_000),
-        help = both("过程中两次上报的间隔，规范另有规定时除外", "Time between two reports of a process, unless the spec has one")
+        help = both("过程中两次上报的间隔，规范另有规定时除外；或 app 每条指令之前的时间", "Time between two reports of a process, unless the spec has one; or before each command of an app")
     )]
     pace: u64,
     #[arg(
@@ -110,6 +110,13 @@ pub fn help() -> Help {
                  `--allow` allows, one after each `--pace`. With a scenario, it sends the commands that the scenario expects, and checks \
                  the responses by its rules.",
             )),
+            Part::Terms(
+                both("其他退出码", "Other exit statuses"),
+                vec![(
+                    "4",
+                    both("`--as app` 无法连接机器人", "`--as app` cannot connect to the robot"),
+                )],
+            ),
             Part::Examples(vec![
                 (
                     "fcproto mock",
@@ -130,8 +137,8 @@ pub fn help() -> Help {
             ]),
         ],
         fails: both(
-            "规范或场景有错误，或 app 不符合场景",
-            "Errors in the spec or the scenario, or an app that does not meet it",
+            "规范或场景有错误，或对方不符合场景",
+            "Errors in the spec or the scenario, or another side that does not meet it",
         ),
         speaks: "",
     }
