@@ -80,6 +80,8 @@ pub enum Command {
     Mock(mock::Options),
     Proxy(proxy::Options),
     Certify(certify::Options),
+    #[cfg(feature = "record")]
+    Record(crate::record::Options),
     Decode(decode::Options),
     Encode(encode::Options),
     Drift(drift::Options),

@@ -37,6 +37,8 @@ mod progress;
 mod project;
 mod proxy;
 mod questions;
+#[cfg(feature = "record")]
+mod record;
 mod recording;
 mod release;
 mod retire;
@@ -99,6 +101,8 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Call(options) => call::run(&args.place, options),
         Command::Mock(options) => mock::run(&args.place, options),
         Command::Certify(options) => certify::run(&args.place, options),
+        #[cfg(feature = "record")]
+        Command::Record(options) => record::run(&args.place, options),
         Command::Proxy(options) => proxy::run(&args.place, options),
         Command::Lsp(options) => lsp::run(&args.place, options),
         Command::Completions(options) => shell::completions(options),

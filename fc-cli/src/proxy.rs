@@ -49,6 +49,13 @@ pub struct Options {
         help = both("随机故障的种子 [默认：任意]", "Seed of faults by chance [default: any]")
     )]
     seed: Option<u64>,
+    #[cfg(feature = "record")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        help = both("同时写入 MCAP 文件", "Also write an MCAP file")
+    )]
+    record: Option<std::path::PathBuf>,
     #[arg(
         long,
         value_name = "FORMAT",
@@ -116,24 +123,45 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         faults: faults?,
         seed: options.seed.unwrap_or_else(fc_workshop::fault::any_seed),
     };
+    block_on(forward(model, options, &settings))?
+}
+
+async fn forward<'m>(
+    model: &'m Model,
+    options: &Options,
+    settings: &Settings,
+) -> Result<Status, Failure> {
     let reflector = Reflector::new(model);
-    block_on(async {
-        let listeners = options.ports.listen(model).await?;
-        let addresses = listeners.addresses()?;
-        // Before the first line, because its reader may end the proxy at once.
-        let mut interrupt = Interrupt::new()?;
-        print::result(&endpoint::line(addresses))?;
-        if !settings.faults.is_empty() && options.seed.is_none() {
-            let seed = settings.seed;
-            print::result(&match options.format {
-                Shown::Text => said!("种子 {seed}\n", "seed {seed}\n"),
-                Shown::Json => json!({ "seed": seed }).to_string() + "\n",
-            })?;
+    let listeners = options.ports.listen(model).await?;
+    let addresses = listeners.addresses()?;
+    // Before the first line, because its reader may end the proxy at once.
+    let mut interrupt = Interrupt::new()?;
+    print::result(&endpoint::line(addresses))?;
+    if !settings.faults.is_empty() && options.seed.is_none() {
+        let seed = settings.seed;
+        print::result(&match options.format {
+            Shown::Text => said!("种子 {seed}\n", "seed {seed}\n"),
+            Shown::Json => json!({ "seed": seed }).to_string() + "\n",
+        })?;
+    }
+    #[cfg(feature = "record")]
+    let mut recorder = match &options.record {
+        Some(path) => Some(crate::record::recorder(model, path)?),
+        None => None,
+    };
+    let show = &mut |event: Event<'_, 'm>| {
+        #[cfg(feature = "record")]
+        if let (Event::Record(record), Some(recorder)) = (&event, &mut recorder) {
+            recorder.add(record).map_err(io::Error::other)?;
         }
-        let show = &mut |event: Event<'_, '_>| show(model, options.format, &event);
-        serve(&reflector, &settings, listeners, show, interrupt.next()).await?;
-        Ok(Status::Fine)
-    })?
+        show(model, options.format, &event)
+    };
+    serve(&reflector, settings, listeners, show, interrupt.next()).await?;
+    #[cfg(feature = "record")]
+    if let Some(recorder) = recorder {
+        recorder.finish()?;
+    }
+    Ok(Status::Fine)
 }
 
 fn show(model: &Model, format: Shown, event: &Event<'_, '_>) -> io::Result<()> {

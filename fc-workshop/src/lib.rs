@@ -19,6 +19,8 @@ pub mod listen;
 pub mod mock;
 pub mod paths;
 pub mod proxy;
+#[cfg(feature = "record")]
+pub mod recording;
 pub mod run;
 pub mod scenario;
 pub mod stream;

@@ -70,6 +70,8 @@ fn of(path: &[&str]) -> Option<Help> {
         ["call"] => call::help(),
         ["mock"] => mock::help(),
         ["proxy"] => proxy::help(),
+        #[cfg(feature = "record")]
+        ["record"] => crate::record::help(),
         ["certify"] => certify::help(),
         ["decode"] => decode::help(),
         ["encode"] => encode::help(),

@@ -114,7 +114,10 @@ pub fn help() -> Help {
                 both("其他退出码", "Other exit statuses"),
                 vec![(
                     "4",
-                    both("`--as app` 无法连接机器人", "`--as app` cannot connect to the robot"),
+                    both(
+                        "`--as app` 无法连接机器人",
+                        "`--as app` cannot connect to the robot",
+                    ),
                 )],
             ),
             Part::Examples(vec![

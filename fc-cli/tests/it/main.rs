@@ -44,6 +44,8 @@ mod pre_commit;
 mod progress;
 mod proxy;
 mod questions;
+#[cfg(feature = "record")]
+mod record;
 mod release;
 mod retire;
 mod shell;

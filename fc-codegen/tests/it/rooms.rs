@@ -186,6 +186,7 @@ const CRATES: &[Crate] = &[
             "fault",
             "proxy",
             "certify",
+            "recording",
         ],
         upwards: &[],
     },

@@ -48,6 +48,8 @@ pub struct Record<'m> {
     pub offset: u64,
     /// The number of bytes. Damaged bytes end at the next frame.
     pub length: u64,
+    /// The bytes of the frame. Of damaged bytes, only as many as a header has.
+    pub bytes: Vec<u8>,
     /// The identity of the frame, as far as its header shows it.
     pub id: Option<FrameId>,
     /// The kind of the frame, or `None` if the spec has none with this value.
@@ -265,6 +267,7 @@ fn record<'m>(
         time,
         offset: piece.offset,
         length: piece.length,
+        bytes: piece.bytes.to_vec(),
         id: None,
         kind: None,
         operation: None,

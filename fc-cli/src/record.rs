@@ -1,0 +1,94 @@
+//! `fcproto record`.
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use fc_codegen::inspect::{fingerprint, json};
+use fc_reflect::Reflector;
+use fc_spec::model::Model;
+use fc_workshop::recording::{Origin, Recorder};
+
+use crate::help::{Help, Part};
+use crate::lang::{both, counted, said};
+use crate::outcome::{Failure, Status};
+use crate::place::Place;
+use crate::print;
+use crate::recording::Recording;
+use crate::spec::Spec;
+
+/// Options of `fcproto record`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    #[command(flatten)]
+    recording: Recording,
+    #[arg(
+        long,
+        value_name = "FILE",
+        help = both("写入的 MCAP 文件", "MCAP file to write")
+    )]
+    out: PathBuf,
+}
+
+pub fn help() -> Help {
+    Help {
+        summary: both(
+            "把通信写成 MCAP，供 Foxglove 等软件查看",
+            "Write traffic as MCAP for viewers such as Foxglove",
+        ),
+        details: vec![
+            Part::Text(both(
+                "每个接口的每个方向一个 JSON 通道，附 JSON Schema；`/fc/frames` 是原始的帧；报文中的图片是 `foxglove.CompressedImage`，\
+                 错误是 `foxglove.Log`；规范作为附件，指纹在元数据中。",
+                "Each side of each operation is a JSON channel with a JSON Schema. `/fc/frames` has the raw frames, pictures in messages are \
+                 `foxglove.CompressedImage`, and errors are `foxglove.Log`. The spec is attached, and its fingerprint is in the metadata.",
+            )),
+            Part::Examples(vec![
+                ("fcproto record capture.pcapng --out run.mcap", ""),
+                (
+                    "sudo tcpdump -U -w - tcp | fcproto record --out run.mcap",
+                    both("边抓边录", "Record live traffic"),
+                ),
+            ]),
+        ],
+        fails: both("规范有错误", "Errors in the spec"),
+        speaks: "",
+    }
+}
+
+/// Begins a recording in a file. The recorder writes whole chunks, so the file has no buffer.
+pub fn recorder<'m>(model: &'m Model, path: &Path) -> Result<Recorder<'m, File>, Failure> {
+    let origin = Origin {
+        dump: json(model),
+        fingerprint: fingerprint(model),
+        program: concat!("fcproto ", env!("CARGO_PKG_VERSION")).to_owned(),
+    };
+    let file = File::create(path).map_err(|error| {
+        let path = path.display();
+        said!(
+            "无法写入 `{path}`：{error}",
+            "cannot write `{path}`: {error}"
+        )
+    })?;
+    Ok(Recorder::new(model, file, &origin)?)
+}
+
+pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+    let spec = Spec::read(place)?;
+    let Some(model) = &spec.model else {
+        spec.show_faults()?;
+        return Ok(spec.status());
+    };
+    let mut recorder = recorder(model, &options.out)?;
+    let mut frames = 0_usize;
+    let reflector = Reflector::new(model);
+    options.recording.read(&reflector, &mut |record| {
+        frames += 1;
+        recorder.add(record).map_err(io::Error::other)
+    })?;
+    recorder.finish()?;
+    let frames = counted(frames, "帧", "frame");
+    let out = options.out.display();
+    print::done(&said!("{frames}，写入 `{out}`\n", "{frames} in `{out}`\n"))?;
+    Ok(Status::Fine)
+}

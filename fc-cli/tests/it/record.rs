@@ -1,0 +1,44 @@
+//! `fcproto record`, and the proxy with `--record`.
+
+use crate::support::Project;
+use crate::support::robot::Robot;
+
+/// The first bytes of a recording, and of its end.
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+fn is_whole(project: &Project, path: &str) -> bool {
+    let bytes = std::fs::read(project.path(path)).expect("a recording");
+    let has = |topic: &[u8]| bytes.windows(topic.len()).any(|window| window == topic);
+    bytes.starts_with(MAGIC) && bytes.ends_with(MAGIC) && has(b"/get_level/response")
+}
+
+#[test]
+fn traffic_is_recorded() {
+    let project = Project::new();
+    let mock = Robot::mock(&project, &[]);
+    let proxy = mock.proxy(&project, &["--record", "live.mcap"]);
+    proxy.call(&project, &["get_level"]).expect(0);
+    proxy.stop("-INT").expect(0);
+    assert!(is_whole(&project, "live.mcap"));
+}
+
+#[test]
+fn recorded_bytes_become_a_recording() {
+    let project = Project::new();
+    let response = project.fc(&["encode", "get_level", "--side", "response"]).expect(0);
+    project.write("frame.hex", &response.stdout);
+    let record = ["record", "frame.hex", "--out", "run.mcap", "--lang", "en"];
+    let run = project.fc(&record).expect(0);
+    assert!(run.stdout.contains("1 frame in `run.mcap`"), "{run:?}");
+    assert!(is_whole(&project, "run.mcap"));
+}
+
+#[test]
+fn a_folder_that_does_not_exist_is_named() {
+    let project = Project::new();
+    project.write("none.hex", "");
+    let run = project
+        .fc(&["record", "none.hex", "--out", "no/run.mcap", "--lang", "en"])
+        .expect(2);
+    assert!(run.stderr.contains("cannot write `no/run.mcap`"), "{run:?}");
+}

@@ -1,0 +1,136 @@
+//! JSON Schema of messages, as viewers of recordings read it: the root is an object, and references are internal.
+
+use fc_spec::model::{
+    Direction, EnumRepr, EnumType, Field, Model, OneOf, Operation, StructType, Type, TypeRef,
+    TypeShape, WireForm,
+};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
+
+/// Returns the schema of a message with its envelope.
+pub(super) fn of(model: &Model, operation: &Operation, direction: Direction) -> Value {
+    let mut schema = Schema {
+        model,
+        wanted: BTreeSet::new(),
+    };
+    let envelope = match direction {
+        Direction::Request => &model.envelope.request,
+        Direction::Response => &model.envelope.response,
+    };
+    let mut properties = Map::new();
+    for field in envelope {
+        let mut property = schema.ty(&field.ty);
+        describe(&mut property, &field.text.en);
+        properties.insert(field.wire.clone(), property);
+    }
+    if let Some(body) = operation.body(direction) {
+        properties.extend(schema.fields(model.types.structure(&body.ty)));
+    }
+    let mut definitions = Map::new();
+    // A definition may want others.
+    while let Some(name) = schema
+        .wanted
+        .iter()
+        .find(|name| !definitions.contains_key(*name))
+        .cloned()
+    {
+        let definition = schema.definition(&name);
+        definitions.insert(name, definition);
+    }
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": operation.title.en,
+        "type": "object",
+        "properties": properties,
+        "$defs": definitions,
+    })
+}
+
+fn describe(property: &mut Value, text: &str) {
+    if let Value::Object(entries) = property {
+        entries.insert("description".to_owned(), text.into());
+    }
+}
+
+/// A schema with the names of the types that it wants.
+struct Schema<'m> {
+    model: &'m Model,
+    wanted: BTreeSet<String>,
+}
+
+impl Schema<'_> {
+    fn fields(&mut self, shape: &StructType) -> Map<String, Value> {
+        let fields = shape.fields.iter();
+        fields
+            .map(|field| (field.wire.clone(), self.field(field)))
+            .collect()
+    }
+
+    fn field(&mut self, field: &Field) -> Value {
+        let mut property = match field.wire_form {
+            WireForm::String if is_scalar(&field.ty) => json!({ "type": "string" }),
+            WireForm::Number if field.ty == Type::Bool => json!({ "type": "integer" }),
+            _ => self.ty(&field.ty),
+        };
+        let unit = field.details().unit.as_ref();
+        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
+        describe(&mut property, &format!("{}{unit}", field.text.en));
+        property
+    }
+
+    /// The recursion is as deep as the lists of a type.
+    fn ty(&mut self, ty: &Type) -> Value {
+        match ty {
+            Type::Bool => json!({ "type": "boolean" }),
+            Type::Int(_) | Type::TimestampMs | Type::TimestampS => json!({ "type": "integer" }),
+            Type::Float(_) => json!({ "type": "number" }),
+            Type::String => json!({ "type": "string" }),
+            Type::Base64 => json!({ "type": "string", "contentEncoding": "base64" }),
+            Type::Json => json!({}),
+            Type::Array(item) => json!({ "type": "array", "items": self.ty(item) }),
+            Type::Named(named) => self.named(named),
+        }
+    }
+
+    fn named(&mut self, named: &TypeRef) -> Value {
+        if let TypeShape::Enum(shape) = &self.model.types.get(named).shape {
+            return enumeration(shape);
+        }
+        let name = named.name().to_owned();
+        let reference = format!("#/$defs/{name}");
+        self.wanted.insert(name);
+        json!({ "$ref": reference })
+    }
+
+    fn definition(&mut self, name: &str) -> Value {
+        let model = self.model;
+        let shape = model.types.iter().find(|ty| ty.name == name);
+        match shape.map(|ty| &ty.shape) {
+            Some(TypeShape::Struct(shape)) => {
+                json!({ "type": "object", "properties": self.fields(shape) })
+            }
+            // Viewers know no alternatives, so all keys stand side by side.
+            Some(TypeShape::OneOf(OneOf { variants })) => {
+                let mut properties = Map::new();
+                for variant in variants {
+                    properties.extend(self.fields(model.types.structure(&variant.ty)));
+                }
+                json!({ "type": "object", "properties": properties })
+            }
+            Some(TypeShape::Enum(_)) | None => json!({}),
+        }
+    }
+}
+
+fn is_scalar(ty: &Type) -> bool {
+    matches!(ty, Type::Bool | Type::Int(_) | Type::Float(_))
+}
+
+/// Returns the schema of an enum, whose names are in the description.
+fn enumeration(shape: &EnumType) -> Value {
+    let ty = match shape.repr {
+        EnumRepr::Int(_) => "integer",
+        EnumRepr::String => "string",
+    };
+    json!({ "type": ty })
+}
