@@ -98,11 +98,11 @@ impl<'r, 'm> App<'r, 'm> {
             deviations: 0,
         };
         let ended = {
-            let mut played = pin!(player.play(scenario));
+            let mut steps = pin!(player.play(scenario));
             let mut received = pin!(receive(reflector, settings, data, sink));
             tokio::select! {
                 () = end => Ok(()),
-                ended = &mut played => ended,
+                ended = &mut steps => ended,
                 ended = &mut received => ended,
             }
         };
@@ -252,14 +252,13 @@ impl<'m> Player<'_, '_, '_, 'm> {
 
     /// Returns the connection, which is made again after its end.
     async fn client(&mut self) -> Result<&mut Client<'m>, ClientError> {
-        let client = match self.client.take() {
-            Some(client) => client,
-            None => {
-                let Settings {
-                    commands, timeout, ..
-                } = self.settings;
-                Client::connect(self.reflector, commands, *timeout).await?
-            }
+        let Settings {
+            commands, timeout, ..
+        } = self.settings;
+        let client = if let Some(client) = self.client.take() {
+            client
+        } else {
+            Client::connect(self.reflector, commands, *timeout).await?
         };
         Ok(self.client.insert(client))
     }

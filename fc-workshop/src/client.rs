@@ -115,7 +115,7 @@ impl<'m> Client<'m> {
             error,
         })?;
         Ok(Self {
-            connection: Connection::new(reflector, stream),
+            connection: Connection::new(reflector, stream, facts::first_id()),
             reports: VecDeque::new(),
             most_reports: facts::limits(reflector.model()).queued_reports,
         })

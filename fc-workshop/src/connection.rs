@@ -68,9 +68,9 @@ pub struct Connection<'m, S, T> {
 }
 
 impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
-    /// Begins a conversation over a byte stream.
+    /// Begins a conversation over a byte stream. `first_id` is the message id of the first request.
     #[must_use]
-    pub fn new(reflector: &'m Reflector<'m>, stream: S) -> Self {
+    pub fn new(reflector: &'m Reflector<'m>, stream: S, first_id: u32) -> Self {
         let model = reflector.model();
         let (reader, writer) = tokio::io::split(stream);
         let ack = facts::ack(model.calls.ack);
@@ -79,12 +79,7 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
             reader,
             writer,
             received: FrameStream::new(),
-            session: Session::new(
-                facts::rules(model),
-                &facts::limits(model),
-                ack,
-                facts::first_id(),
-            ),
+            session: Session::new(facts::rules(model), &facts::limits(model), ack, first_id),
             out: Vec::new(),
             written: 0,
         }
@@ -107,7 +102,7 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
             data: Arc::clone(data),
             token,
         };
-        let opened = self.session.open(kind, code, policy, Instant::now(), open);
+        let opened = self.session.open(kind, code, policy, now(), open);
         let frame = opened.map_err(NotSent::Busy)?;
         let id = in_frame(frame);
         match self.reflector.seal(id, data, Packing::Plain) {
@@ -135,7 +130,7 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
     pub fn acknowledge(&mut self, report: &Frame<'m>) {
         let digest = Md5::digest(&report.data);
         self.session
-            .handed_on_digested(in_session(report.id), digest, Instant::now());
+            .handed_on_digested(in_session(report.id), digest, now());
         self.send_ack(report);
     }
 
@@ -221,25 +216,23 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
             };
             let digest = Some(Md5::digest(&frame.data));
             let id = in_session(frame.id);
-            return Some(
-                match self.session.receive_digested(id, digest, Instant::now()) {
-                    Incoming::Answer(open) => Event::Answer(open.token, frame),
-                    Incoming::Late => Event::Late(frame),
-                    Incoming::Command => Event::Command(frame),
-                    Incoming::Report => Event::Report(frame),
-                    Incoming::Stream => Event::Stream(frame),
-                    Incoming::Repeated => {
-                        self.send_ack(&frame);
-                        continue;
-                    }
-                },
-            );
+            return Some(match self.session.receive_digested(id, digest, now()) {
+                Incoming::Answer(open) => Event::Answer(open.token, frame),
+                Incoming::Late => Event::Late(frame),
+                Incoming::Command => Event::Command(frame),
+                Incoming::Report => Event::Report(frame),
+                Incoming::Stream => Event::Stream(frame),
+                Incoming::Repeated => {
+                    self.send_ack(&frame);
+                    continue;
+                }
+            });
         }
     }
 
     /// Sends due repetitions. Returns a request whose last deadline has passed.
     fn due(&mut self) -> Option<Event<'m, T>> {
-        let now = Instant::now();
+        let now = now();
         loop {
             let (frame, data) = match self.session.due(now)? {
                 Due::Expired(_, open) => return Some(Event::Expired(open.token)),
@@ -291,6 +284,11 @@ fn in_frame(id: fc_runtime::FrameId) -> FrameId {
         code: id.code,
         id: id.id,
     }
+}
+
+/// Returns the time of the clock that timers have.
+fn now() -> Instant {
+    tokio::time::Instant::now().into_std()
 }
 
 async fn until(due: Option<Instant>) {

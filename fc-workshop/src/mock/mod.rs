@@ -162,7 +162,8 @@ impl<'m> Stage<'m> {
 
     /// Talks with one app until it ends the connection.
     async fn talk(&self, stream: TcpStream) {
-        let mut connection: Connection<'m, _, ()> = Connection::new(self.reflector, stream);
+        let mut connection: Connection<'m, _, ()> =
+            Connection::new(self.reflector, stream, facts::first_id());
         let mut reports = self.apps.join();
         let mut is_greeted = false;
         loop {
@@ -228,7 +229,8 @@ impl<'m> Stage<'m> {
 
     /// Sends streams to one app until it ends the connection.
     async fn stream(&self, stream: TcpStream) {
-        let mut connection: Connection<'m, _, ()> = Connection::new(self.reflector, stream);
+        let mut connection: Connection<'m, _, ()> =
+            Connection::new(self.reflector, stream, facts::first_id());
         let mut frames = self.data.join();
         for frame in self.streams.borrow().latest() {
             connection.send(frame);

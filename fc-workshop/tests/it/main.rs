@@ -17,4 +17,5 @@ mod faults;
 mod guarantees;
 mod mock;
 mod scenarios;
+mod sessions;
 mod support;
