@@ -6,7 +6,6 @@ use fc_reflect::{Direction, Reflector};
 use fc_spec::model::{Kind, Model, Operation, Side};
 use fc_workshop::answer::Outcome;
 use fc_workshop::app::{App, Event, Settings};
-use fc_workshop::client::ClientError;
 use fc_workshop::facts;
 use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::scenario::{Expected, Scenario};
@@ -80,7 +79,10 @@ pub fn run(
     block_on(async {
         let app = match App::connect(reflector, &settings).await {
             Ok(app) => app,
-            Err(error) => return unreachable(error),
+            Err(error) => {
+                print::failure(Failure::from(error).as_ref());
+                return Ok(Status::Unanswered);
+            }
         };
         let mut interrupt = Interrupt::new()?;
         let sink = &mut |event: Event<'_, '_>| show(reflector, options.app.format, &event);
@@ -97,11 +99,6 @@ pub fn run(
         }
         Ok(Status::Faulty)
     })?
-}
-
-fn unreachable(error: ClientError) -> Result<Status, Failure> {
-    print::failure(Failure::from(error).as_ref());
-    Ok(Status::Unanswered)
 }
 
 /// Returns the names of the commands that an app may send.
@@ -151,7 +148,7 @@ fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::
         Event::Pushed(frame) => match (frame.operation, shown) {
             (Some(operation), Shown::Json) => format.pushed(operation, frame, None),
             (Some(operation), Shown::Text) => named(operation, frame.data.len()),
-            (None, _) => format!("0x{:04X}\n", frame.id.code),
+            (None, _) => bytes(&format!("0x{:04X}", frame.id.code), frame.data.len()),
         },
         Event::Deviation(name, deviation) => {
             let deviation = in_lang(deviation);
@@ -163,13 +160,14 @@ fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::
     print::result(&line)
 }
 
-fn named(operation: &Operation, bytes: usize) -> String {
+fn named(operation: &Operation, count: usize) -> String {
     let (name, title) = (&operation.name, lang().text(&operation.title));
     if operation.kind() == Kind::Report {
         return format!("{name}  {title}\n");
     }
-    said!(
-        "{name}  {title}  {bytes} 字节\n",
-        "{name}  {title}  {bytes} bytes\n"
-    )
+    bytes(&format!("{name}  {title}"), count)
+}
+
+fn bytes(name: &str, count: usize) -> String {
+    said!("{name}  {count} 字节\n", "{name}  {count} bytes\n")
 }

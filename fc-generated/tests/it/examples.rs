@@ -5,10 +5,12 @@ use fc_generated::descriptors::OPERATIONS;
 use fc_runtime::{OperationInfo, OperationKind};
 use fc_spec::diagnostic::Faults;
 use fc_spec::load::load;
+use fc_spec::model::Model;
 use fc_spec::syntax::read_dir;
 use fc_workshop::mock::{Mock, Settings};
+use fc_workshop::scenario::{Scenario, Verdict};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 #[test]
@@ -35,10 +37,6 @@ fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
 #[test]
 fn the_app_tours_a_mock_of_the_spec() {
     let [app] = examples(["app"], "");
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut faults = Faults::new();
-    let sources = read_dir(&root, Path::new("spec"), &mut faults);
-    let model = load(&sources, &mut faults).model().expect("a valid spec");
     let settings = Settings {
         pace: Duration::from_millis(1),
         // The example robot, too, sends its picture after this command.
@@ -47,8 +45,48 @@ fn the_app_tours_a_mock_of_the_spec() {
         ignores_preconditions: true,
         ..Settings::default()
     };
-    let mock = Mock::start(model, settings).unwrap();
+    let mock = Mock::start(spec(), settings).unwrap();
     tour(&app, [mock.commands().port(), mock.data().port()]);
+}
+
+#[test]
+fn an_app_that_breaks_a_scenario_is_caught() {
+    let [app] = examples(["app"], "");
+    let mut commands = OPERATIONS
+        .iter()
+        .filter(|operation| operation.kind == OperationKind::Command && operation.code.is_some());
+    // The app sends all commands.
+    let forbidden = commands.next().unwrap().name.to_owned();
+    let scenario = Scenario {
+        never: vec![forbidden.clone()],
+        ..Scenario::of_commands(commands.map(|command| command.name.to_owned()))
+    };
+    let settings = Settings {
+        scenario: Some(scenario),
+        expect: true,
+        ..Settings::default()
+    };
+    let mock = Mock::start(spec(), settings).unwrap();
+    let mut app = Command::new(app)
+        .args(["--command-port", &mock.commands().port().to_string()])
+        .args(["--data-port", &mock.data().port().to_string()])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let verdict = mock.verdict();
+    // It may still wait for the robot, which has ended.
+    app.kill().unwrap();
+    app.wait().unwrap();
+    assert_eq!(verdict, Some(Verdict::Forbidden(forbidden)));
+}
+
+/// The model of the spec.
+fn spec() -> Model {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut faults = Faults::new();
+    let sources = read_dir(&root, Path::new("spec"), &mut faults);
+    load(&sources, &mut faults).model().expect("a valid spec")
 }
 
 /// Lets the app call every command, and checks its table.

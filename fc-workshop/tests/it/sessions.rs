@@ -165,7 +165,7 @@ impl<'m> Run<'m> {
             }
             other => return Err(format!("a connection cannot do that: {other:?}")),
         }
-        self.look().await?;
+        self.look()?;
         if acknowledged == 0 && self.acknowledged > 0 {
             // A repetition is acknowledged without an event.
             self.got.push(Event::Repeated);
@@ -251,7 +251,7 @@ impl<'m> Run<'m> {
     }
 
     /// Takes all events and all frames that need no more time.
-    async fn look(&mut self) -> Result<(), Failure> {
+    fn look(&mut self) -> Result<(), Failure> {
         loop {
             let before = self.received.rest().len();
             if let Some(event) = self.connection.next().now_or_never() {
