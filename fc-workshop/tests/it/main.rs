@@ -15,7 +15,12 @@ mod decode;
 mod drift;
 mod faults;
 mod guarantees;
+#[allow(dead_code, reason = "a part of it is used here")]
+#[path = "../../../fc-spec/tests/it/json_schema.rs"]
+mod json_schema;
 mod mock;
 mod scenarios;
 mod sessions;
 mod support;
+#[path = "../../../fc-spec/tests/it/yaml_as_json.rs"]
+mod yaml_as_json;

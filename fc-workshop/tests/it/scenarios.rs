@@ -1,6 +1,8 @@
 //! Reading scenarios.
 
+use crate::json_schema::Validator;
 use crate::support::{root, small};
+use crate::yaml_as_json;
 use fc_reflect::Reflector;
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::model::{Dump, Lang, Model, Operation, Value};
@@ -9,6 +11,7 @@ use fc_workshop::app::{self, App};
 use fc_workshop::mock::{Mock, Settings};
 use fc_workshop::run::block_on;
 use fc_workshop::scenario::{Expected, Scenario, Verdict};
+use std::collections::BTreeSet;
 use std::future::pending;
 use std::time::Duration;
 
@@ -61,22 +64,78 @@ const FAULTY: &[(&str, &[&str])] = &[
     ("on: [", &["1:"]),
 ];
 
+/// The errors of a scenario of the small spec.
+fn errors(text: &str) -> String {
+    let model = small();
+    let sources = Sources::from_texts([("s.yaml", text)]);
+    let mut faults = Faults::new();
+    let scenario = Scenario::read(&Reflector::new(&model), &sources, &mut faults);
+    assert_eq!(scenario, None, "{text}");
+    render(&faults, &sources, Format::Text, Lang::En)
+}
+
 #[test]
 fn errors_of_a_scenario_have_their_place() {
-    let model = small();
-    let reflector = Reflector::new(&model);
     for (text, expected) in FAULTY {
-        let sources = Sources::from_texts([("s.yaml", *text)]);
-        let mut faults = Faults::new();
-        assert_eq!(
-            Scenario::read(&reflector, &sources, &mut faults),
-            None,
-            "{text}"
-        );
-        let shown = render(&faults, &sources, Format::Text, Lang::En);
+        let shown = errors(text);
         for part in *expected {
             assert!(shown.contains(part), "{text} lacks {part:?}:\n{shown}");
         }
+    }
+}
+
+/// A misspelled key, and the part of the schema that lists the known ones.
+const UNKNOWN: &[(&str, &str)] = &[
+    ("zzzzzzzz: 1", ""),
+    ("on: [{ request: set_light, zzzzzzzz: 1 }]", "/$defs/rule"),
+    (
+        "on: [{ request: set_light, reports: [{ report: dimmed, zzzzzzzz: 1 }] }]",
+        "/$defs/report",
+    ),
+    (
+        "expect: [{ request: set_light, zzzzzzzz: 1 }]",
+        "/$defs/expected_request",
+    ),
+    (
+        "expect: [{ acknowledged: dimmed, zzzzzzzz: 1 }]",
+        "/$defs/acknowledged",
+    ),
+];
+
+#[test]
+fn the_schema_has_the_keys_of_the_reader() {
+    let text = std::fs::read_to_string(root().join("conformance/scenario.schema.json")).unwrap();
+    let schema: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let validator = Validator { root: &schema };
+    let fits = |text: &str| validator.accepts(&schema, &yaml_as_json::parse(text));
+    for (text, part) in UNKNOWN {
+        let errors = errors(text);
+        let (_, known) = errors.split_once("the keys are ").expect(&errors);
+        let known = known.lines().next().unwrap().split(", ");
+        let known: BTreeSet<&str> = known.map(str::trim).collect();
+        let properties = &schema.pointer(part).unwrap()["properties"];
+        let keys = properties.as_object().unwrap().keys();
+        assert_eq!(known, keys.map(String::as_str).collect(), "{text}");
+        assert!(!fits(text), "{text}");
+    }
+    for entry in std::fs::read_dir(root().join("conformance/scenarios")).unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(fits(&text), "{}", path.display());
+        // Titles of both languages are for people, so the reader does not demand them.
+        assert!(
+            text.starts_with("zh: ") && text.contains("\nen: "),
+            "{text}"
+        );
+    }
+    for text in [
+        "on: [{ refuse: timeout }]",
+        "on: [{ request: set_light, silent: 1 }]",
+        "on: [{ request: set_light, times: -1 }]",
+        "expect: set_light",
+        "never: [1]",
+    ] {
+        assert!(!fits(text) && !errors(text).is_empty(), "{text}");
     }
 }
 
