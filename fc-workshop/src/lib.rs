@@ -9,6 +9,7 @@ pub mod arguments;
 pub mod capture;
 pub mod certify;
 pub mod client;
+pub mod complete;
 pub mod connection;
 pub mod decode;
 pub mod drift;

@@ -1,5 +1,6 @@
 //! `fcproto call`.
 
+mod interactive;
 mod session;
 pub mod show;
 
@@ -31,7 +32,7 @@ const FOLLOW: &str = "300";
 pub struct Options {
     #[arg(
         value_name = "NAME",
-        required_unless_present_any = ["list", "raw"],
+        required_unless_present_any = ["interactive", "list", "raw"],
         help = both("指令或流的名称", "Name of a command or stream")
     )]
     name: Option<String>,
@@ -101,6 +102,12 @@ pub struct Options {
     list: bool,
     #[arg(
         long,
+        conflicts_with_all = ["name", "json", "raw", "list", "follow", "repeat"],
+        help = both("逐行输入指令，用 Tab 补全", "Read calls line by line, with completion by Tab")
+    )]
+    interactive: bool,
+    #[arg(
+        long,
         value_name = "FORMAT",
         default_value = "text",
         help = both("输出格式", "Output format")
@@ -130,6 +137,11 @@ pub fn help() -> Help {
             Part::Text(both(
                 "只有影响为 `read` 的指令不需要 `--allow`。",
                 "Only commands with the effect `read` need no `--allow`.",
+            )),
+            Part::Text(both(
+                "`--interactive` 逐行读取 `fcproto call` 之后的参数，全部使用同一个连接，并应答上报。Tab 补全名称、键和值，方向键取历史。",
+                "`--interactive` reads the arguments of `fcproto call` line by line. All lines use one connection, which acknowledges \
+                 reports. Tab completes names, keys and values, and the arrows recall earlier lines.",
             )),
             Part::Terms(
                 both("其他退出码", "Other exit statuses"),
@@ -161,6 +173,7 @@ pub fn help() -> Help {
                     both("直到充电过程结束", "Until charging has ended"),
                 ),
                 ("fcproto call get_robot_sn --format json | jq .body", ""),
+                ("fcproto call --interactive --to robot.local", ""),
                 ("fcproto call --raw 0x0110 7b7d --allow motion", ""),
             ]),
         ],
@@ -183,30 +196,46 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec.show_faults()?;
         return Ok(spec.status());
     };
+    let reflector = Reflector::new(model);
+    if options.interactive {
+        return interactive::run(&reflector, options);
+    }
     if options.list {
         print::result(&show::list(model, options.format == Shown::Json))?;
         return Ok(Status::Fine);
     }
-    let reflector = Reflector::new(model);
+    let request = request(&reflector, options, options.allow)?;
+    fc_workshop::run::block_on(call(&reflector, options).run(&request))?
+}
+
+/// Returns the request of a command line.
+fn request<'m>(
+    reflector: &Reflector<'m>,
+    options: &Options,
+    allowed: Option<Allowed>,
+) -> Result<Request<'m>, Failure> {
     let request = match &options.raw {
-        Some(raw) => raw_request(model, raw)?,
-        None => named_request(&reflector, options)?,
+        Some(raw) => raw_request(reflector.model(), raw)?,
+        None => named_request(reflector, options)?,
     };
-    allow::check(request.operation, options.allow)?;
-    let call = session::Call {
-        reflector: &reflector,
+    allow::check(request.operation, allowed)?;
+    Ok(request)
+}
+
+/// Returns the settings of a command line.
+fn call<'r, 'm>(reflector: &'m Reflector<'m>, options: &'r Options) -> session::Call<'r, 'm> {
+    let timeout = options.timeout.map(Duration::from_millis);
+    session::Call {
+        reflector,
         to: &options.to,
         repeat: options.repeat,
-        timeout: options
-            .timeout
-            .map_or_else(|| facts::call_timeout(model), Duration::from_millis),
+        timeout: timeout.unwrap_or_else(|| facts::call_timeout(reflector.model())),
         follow: options.follow.map(Duration::from_secs),
         shown: show::Format {
             json: options.format == Shown::Json,
             lang: lang(),
         },
-    };
-    fc_workshop::run::block_on(call.run(&request))?
+    }
 }
 
 /// Composes the request of an operation and checks it.

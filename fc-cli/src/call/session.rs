@@ -19,7 +19,7 @@ const MOST_TIMES: usize = 1 << 16;
 
 /// The settings of a call.
 pub struct Call<'r, 'm> {
-    pub reflector: &'r Reflector<'m>,
+    pub reflector: &'m Reflector<'m>,
     pub to: &'r str,
     pub repeat: u32,
     pub timeout: Duration,
@@ -42,20 +42,34 @@ impl<'m> Call<'_, 'm> {
     }
 
     async fn each(&self, request: &Request<'m>) -> Result<Status, Failure> {
+        let mut client = self.connect(request).await?;
+        self.with(&mut client, request).await
+    }
+
+    /// Connects to the port of a request.
+    pub async fn connect(&self, request: &Request<'m>) -> Result<Client<'m>, Failure> {
         let port = request.operation.map(|operation| operation.port);
         let ports = &self.reflector.model().transport.ports;
         let port = port.map_or(&ports.command, |role| ports.get(role));
         let address = with_port(self.to, port.number);
-        let mut client = Client::connect(self.reflector, &address, self.timeout).await?;
+        Ok(Client::connect(self.reflector, &address, self.timeout).await?)
+    }
+
+    /// Sends the request over a connection as often as asked.
+    pub async fn with(
+        &self,
+        client: &mut Client<'m>,
+        request: &Request<'m>,
+    ) -> Result<Status, Failure> {
         if let Some(operation) = request.operation
             && operation.kind() == Kind::Stream
         {
-            return self.stream(&mut client, request, operation).await;
+            return self.stream(client, request, operation).await;
         }
         let mut status = Status::Fine;
         let mut times = Vec::new();
         for _ in 0..self.repeat {
-            let one = self.once(&mut client, request, &mut times).await?;
+            let one = self.once(client, request, &mut times).await?;
             if one != Status::Fine {
                 status = one;
             }
@@ -159,9 +173,13 @@ impl<'m> Call<'_, 'm> {
     }
 
     fn show_pushed(&self, operation: &Operation, frame: &Frame<'_>) -> Result<(), Failure> {
+        Ok(print::result(&self.pushed(operation, frame))?)
+    }
+
+    /// Returns the text of a report or a frame of a stream.
+    pub fn pushed(&self, operation: &Operation, frame: &Frame<'_>) -> String {
         let message = (self.reflector).message(Some(operation), frame.id.direction, &frame.data);
-        print::result(&self.shown.pushed(operation, frame, message.as_ref().ok()))?;
-        Ok(())
+        self.shown.pushed(operation, frame, message.as_ref().ok())
     }
 }
 

@@ -1,8 +1,10 @@
 //! `fcproto call` against `fcproto mock`.
 
-use crate::support::Project;
 use crate::support::robot::Robot;
+use crate::support::{Project, Run, command};
 use serde_json::{Value, json};
+use std::io::Write as _;
+use std::process::Stdio;
 
 /// Arguments, exit status, and texts in the output or in the errors.
 type Case = (&'static [&'static str], i32, &'static [&'static str]);
@@ -198,3 +200,46 @@ fn a_process_is_followed_to_its_end() {
 
 const SET_LEVEL: &str = "set_level --allow motion data.level=40 data.ratio=0.25 data.armed=true \
     data.label=lamp data.serial=AB data.colours.0.red=1 data.colours.0.green=2 data.phase=dark";
+
+#[test]
+fn lines_of_a_pipe_are_calls() {
+    let project = Project::new();
+    let mock = Robot::mock(&project, &["--pace", "5"]);
+    let mut run = command(&[
+        "call",
+        "--interactive",
+        "--to",
+        &mock.commands,
+        "--lang",
+        "en",
+    ])
+    .current_dir(project.path(""))
+    .stdin(Stdio::piped())
+    .stdout(Stdio::piped())
+    .stderr(Stdio::piped())
+    .spawn()
+    .expect("the command can be run");
+    let lines = format!(
+        "get_level\n\nprobe\nprobe --allow motion\nlower\n{SET_LEVEL} --follow\n--nothing\nlabel='\n--list\n"
+    );
+    let mut stdin = run.stdin.take().expect("its input");
+    stdin.write_all(lines.as_bytes()).expect("it reads");
+    drop(stdin);
+    let run = Run::new(&run.wait_with_output().expect("its end")).expect(2);
+    for part in [
+        "get_level  0 fine",
+        "probe  0 fine",
+        "burning (3)",
+        "0x0102",
+    ] {
+        assert!(run.stdout.contains(part), "{part}: {run:#?}");
+    }
+    for part in [
+        "effect `unknown`",
+        "there is no command `lower`",
+        "--nothing",
+        "a quotation mark has no partner",
+    ] {
+        assert!(run.stderr.contains(part), "{part}: {run:#?}");
+    }
+}

@@ -174,6 +174,7 @@ const CRATES: &[Crate] = &[
             "run",
             "listen",
             "arguments",
+            "complete",
             "answer",
             "connection",
             "client",

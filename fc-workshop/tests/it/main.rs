@@ -11,6 +11,7 @@
 
 mod arguments;
 mod certify;
+mod complete;
 mod decode;
 mod drift;
 mod faults;
