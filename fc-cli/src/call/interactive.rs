@@ -35,7 +35,7 @@ pub fn run(reflector: &Reflector<'_>, options: &Options) -> Result<Status, Failu
     block_on(Talk::new(reflector, options, prompt).run())?
 }
 
-/// The line editor, which blocks a thread of its own.
+/// The line editor. It blocks a separate thread.
 struct Prompt {
     /// Asks for the next line.
     ask: mpsc::Sender<()>,

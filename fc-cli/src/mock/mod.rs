@@ -30,7 +30,8 @@ pub struct Options {
     #[arg(
         long = "as",
         value_name = "SIDE",
-        default_value = "robot",
+        value_enum,
+        default_value_t = Side::Robot,
         requires_if("app", "to"),
         help = both("模拟哪一方", "The side to play")
     )]

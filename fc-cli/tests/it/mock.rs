@@ -127,7 +127,7 @@ fn an_app_finds_deviations_of_a_robot() {
 }
 
 #[test]
-fn an_app_sends_only_what_is_allowed() {
+fn an_app_sends_only_allowed_commands() {
     let project = Project::new();
     project.write("s.yaml", "expect: [get_level, probe]\n");
     // It is refused before a connection is made, so no robot is needed.
@@ -159,6 +159,7 @@ fn many_robots_have_their_ports() {
         .expect("a shell");
     let lines = BufReader::new(mock.stdout.take().expect("its output")).lines();
     let lines: Vec<String> = lines.take(50).map(|line| line.expect("a line")).collect();
+    assert_eq!(lines.len(), 50);
     for line in lines.iter().step_by(7) {
         let robot = line.split_whitespace().nth(1).expect("an address");
         project.fc(&["call", "get_level", "--to", robot]).expect(0);
