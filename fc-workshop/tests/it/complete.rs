@@ -12,7 +12,7 @@ const CASES: &[(&[&str], &str, &[&str])] = &[
     (
         &["set_light"],
         "spot.",
-        &["spot.x=", "spot.y=", "spot.room="],
+        &["spot.room=", "spot.floor=", "spot.x=", "spot.y="],
     ),
     (&["set_light", "lvl=1"], "tr", &["tree."]),
     (&["set_light"], "tree.ne", &["tree.next.0."]),
