@@ -90,24 +90,33 @@ impl Recording {
             self.files.as_slice()
         };
         for file in files {
-            let result = if file.as_os_str() == "-" {
-                decode::read(reflector, self.source(reflector, io::stdin()), sink)
-            } else {
-                let opened = File::open(file).map_err(|error| cannot(file, &error))?;
-                decode::read(reflector, self.source(reflector, opened), sink)
-            };
-            result.map_err(|error| failure(file, error))?;
+            let format = self.input.map(Into::into);
+            read_file(reflector, file, format, &self.ports, sink)?;
         }
         Ok(())
     }
+}
 
-    fn source<R: Read + Send>(&self, reflector: &Reflector<'_>, input: R) -> Source<R> {
-        Source {
-            input,
-            format: self.input.map(Into::into),
-            ports: Ports::new(reflector.model(), &self.ports),
-        }
-    }
+/// Describes all frames of a file, or of standard input for `-`. Captures are read on the ports of the spec and on
+/// `more_ports`.
+pub fn read_file<'m>(
+    reflector: &Reflector<'m>,
+    file: &Path,
+    format: Option<decode::Format>,
+    more_ports: &[u16],
+    sink: &mut dyn FnMut(&Record<'m>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let input: Box<dyn Read + Send> = if file.as_os_str() == "-" {
+        Box::new(io::stdin())
+    } else {
+        Box::new(File::open(file).map_err(|error| cannot(file, &error))?)
+    };
+    let source = Source {
+        input,
+        format,
+        ports: Ports::new(reflector.model(), more_ports),
+    };
+    decode::read(reflector, source, sink).map_err(|error| failure(file, error))
 }
 
 fn failure(file: &Path, error: DecodeError) -> Failure {

@@ -5,7 +5,7 @@ use crate::answer::Outcome;
 use crate::arguments::json;
 use crate::client::{Client, ClientError};
 use crate::facts;
-use crate::scenario::{Action, Expected, Play, Scenario, fits, merge};
+use crate::scenario::{Action, Expected, Play, Scenario, difference, merge};
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Frame, Reflector};
 use fc_spec::model::{Operation, ResultRole, Text, Value};
@@ -322,6 +322,13 @@ fn deviation(
     }
     let values = action.answer.as_ref()?;
     let found = std::str::from_utf8(&frame.data).ok().and_then(json);
-    let has_values = found.is_some_and(|found| fits(values, &found));
-    (!has_values).then(|| text!("响应没有 {values}", "the response lacks {values}"))
+    let (path, expected, found) = difference(values, found.as_ref(), "")?;
+    let found = found.map_or_else(|| text!("没有", "nothing"), |it| text!("{it}", "{it}"));
+    Some(text!(
+        "`{path}` 应为 {expected}，实际为 {found}",
+        "`{path}`: expected {expected}, found {found}",
+        path = path,
+        expected = expected.to_string(),
+        found = found
+    ))
 }

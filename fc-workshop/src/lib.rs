@@ -22,6 +22,7 @@ pub mod paths;
 pub mod proxy;
 #[cfg(feature = "record")]
 pub mod recording;
+pub mod replay;
 pub mod run;
 pub mod scenario;
 pub mod stream;

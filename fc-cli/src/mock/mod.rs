@@ -2,7 +2,7 @@
 
 mod app;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::ValueEnum;
@@ -12,6 +12,7 @@ use fc_spec::model::{Kind, Model, Operation};
 use fc_spec::source::Sources;
 use fc_workshop::listen::Listeners;
 use fc_workshop::mock::{Settings, serve};
+use fc_workshop::replay::Recorded;
 use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::scenario::{Scenario, Verdict};
 
@@ -22,6 +23,7 @@ use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
+use crate::recording::read_file;
 use crate::spec::{Spec, show_faults};
 
 /// Options of `fcproto mock`.
@@ -73,6 +75,13 @@ pub struct Options {
         help = both("按场景文件响应或发送", "Respond or send as a scenario says")
     )]
     scenario: Option<PathBuf>,
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "scenario",
+        help = both("按录下的通信响应或发送", "Respond or send as in recorded traffic")
+    )]
+    replay: Option<PathBuf>,
     #[arg(
         long,
         help = both("对方符合场景时以 0 退出，否则以 1 退出", "Exit with 0 once the other side has met the scenario, otherwise with 1")
@@ -155,8 +164,9 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Ok(spec.status());
     };
     let reflector = Reflector::new(model);
-    let scenario = match &options.scenario {
-        Some(file) => {
+    let scenario = match (&options.scenario, &options.replay) {
+        (None, Some(file)) => Some(recorded(&reflector, file)?),
+        (Some(file), _) => {
             let text = input::text(file)?;
             let sources = Sources::from_texts([(file.display().to_string(), text)]);
             let mut faults = Faults::new();
@@ -167,7 +177,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             }
             scenario
         }
-        None => None,
+        (None, None) => None,
     };
     match options.side {
         Side::App => app::run(&reflector, options, scenario),
@@ -175,12 +185,33 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
 }
 
+/// Returns the scenario of recorded traffic.
+fn recorded(reflector: &Reflector<'_>, file: &Path) -> Result<Scenario, Failure> {
+    let mut recorded = Recorded::new(reflector.model());
+    read_file(reflector, file, None, &[], &mut |record| {
+        recorded.add(record);
+        Ok(())
+    })?;
+    recorded.finish().ok_or_else(|| {
+        let file = file.display();
+        said!(
+            "`{file}` 太长；用 editcap 截取一段",
+            "`{file}` is too long to replay; cut a part of it with editcap"
+        )
+        .into()
+    })
+}
+
 fn robot(model: &Model, options: &Options, scenario: Option<Scenario>) -> Result<Status, Failure> {
     if options.app.to.is_some() {
         return Err(said!("--to 需要 --as app", "--to needs --as app").into());
     }
     if options.expect && scenario.is_none() {
-        return Err(said!("--expect 需要 --scenario", "--expect needs --scenario").into());
+        return Err(said!(
+            "--expect 需要 --scenario 或 --replay",
+            "--expect needs --scenario or --replay"
+        )
+        .into());
     }
     for name in &options.stream_after {
         let is_command = |operation: &Operation| operation.kind() == Kind::Command;

@@ -106,7 +106,7 @@ fn an_app_finds_deviations_of_a_robot() {
         ),
         (
             "on: [{ request: get_level, answer: { level: 7 } }]\nexpect: [get_level]\n",
-            "`get_level`: the response lacks {\"level\":7}",
+            "`get_level`: `level`: expected 7, found 40",
         ),
         (
             "on: [{ request: get_level, silent: true }]\nexpect: [get_level]\n",
@@ -189,4 +189,41 @@ fn robots_without_files_or_ports_are_an_error() {
         .fc(&["mock", "--count", "2", "--data-port", "7"])
         .expect(2);
     assert!(run.stderr.contains("--count"), "{run:?}");
+}
+
+/// Writes recorded traffic: a request, its response with this level, and perhaps a report with its acknowledgement.
+fn record(project: &Project, level: u8, has_report: bool) {
+    let body = format!("{{\"level\":{level},\"stands\":[],\"others\":[]}}");
+    let mut text = String::new();
+    let frames = [
+        &["get_level"][..],
+        &["get_level", "--side", "response", "--json", &body],
+        &["level_changed", "--id", "2"],
+        &["level_changed", "--id", "2", "--side", "response"],
+    ];
+    for args in &frames[..if has_report { 4 } else { 2 }] {
+        text += &project.fc(&[&["encode"], *args].concat()).expect(0).stdout;
+        text.push('\n');
+    }
+    project.write("run.hex", &text);
+}
+
+#[test]
+fn recorded_traffic_is_replayed_as_either_side() {
+    let project = Project::new();
+    record(&project, 77, true);
+    let replay = [
+        "--replay", "run.hex", "--expect", "--pace", "1", "--lang", "en",
+    ];
+    let mock = Robot::mock(&project, &replay);
+    let run = mock.app(&project, &replay).expect(0);
+    assert!(run.stdout.contains("get_level  0 fine"), "{run:?}");
+    mock.end().expect(0);
+
+    // Another robot answers differently now.
+    record(&project, 77, false);
+    let other = Robot::mock(&project, &[]);
+    let run = other.app(&project, &replay).expect(1);
+    let deviation = "`get_level`: `level`: expected 77, found 40";
+    assert!(run.stderr.contains(deviation), "{run:?}");
 }

@@ -25,7 +25,9 @@ fn traffic_is_recorded() {
 #[test]
 fn recorded_bytes_become_a_recording() {
     let project = Project::new();
-    let response = project.fc(&["encode", "get_level", "--side", "response"]).expect(0);
+    let response = project
+        .fc(&["encode", "get_level", "--side", "response"])
+        .expect(0);
     project.write("frame.hex", &response.stdout);
     let record = ["record", "frame.hex", "--out", "run.mcap", "--lang", "en"];
     let run = project.fc(&record).expect(0);

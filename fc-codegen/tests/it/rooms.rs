@@ -184,6 +184,7 @@ const CRATES: &[Crate] = &[
             "capture",
             "decode",
             "drift",
+            "replay",
             "fault",
             "proxy",
             "certify",

@@ -90,7 +90,7 @@ pub(super) const CHECKS: [About; 23] = [
         check: Check::BadJson,
         name: "request.bad_json",
         zh: "不是 JSON 的请求被拒绝：参数不合法，连接保持",
-        en: "a request that is no JSON is refused as invalid, and the connection stays",
+        en: "a request without valid JSON is refused as invalid, and the connection stays",
     },
     About {
         check: Check::UnknownCode,

@@ -118,13 +118,13 @@ fn packed(stage: &Stage<'_, '_>, data: &[u8], plain_length: u64) -> Step<(FrameI
 }
 
 pub(super) async fn bad_gzip(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (id, bytes) = packed(stage, b"this is no gzip member", 100)?;
+    let (id, bytes) = packed(stage, b"not compressed", 100)?;
     protocol_error(stage, evidence, id, &bytes).await
 }
 
 pub(super) async fn gzip_bomb(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
     let limit = stage.model().limits.inflated_bytes;
-    let (_, bytes) = packed(stage, b"this is no gzip member", u64::from(limit) + 1)?;
+    let (_, bytes) = packed(stage, b"not compressed", u64::from(limit) + 1)?;
     endured(stage, evidence, &bytes).await
 }
 

@@ -109,7 +109,7 @@ impl Schema<'_> {
             Some(TypeShape::Struct(shape)) => {
                 json!({ "type": "object", "properties": self.fields(shape) })
             }
-            // Viewers know no alternatives, so all keys stand side by side.
+            // Viewers know no alternatives, so the object has the keys of all variants.
             Some(TypeShape::OneOf(OneOf { variants })) => {
                 let mut properties = Map::new();
                 for variant in variants {

@@ -155,6 +155,29 @@ pub(crate) fn fits(with: &Value, value: &Value) -> bool {
     }
 }
 
+/// Returns the path of the first value that differs from the wanted one, with both. Null fits any value.
+///
+/// The recursion is as deep as the wanted value.
+pub(crate) fn difference<'v>(
+    with: &'v Value,
+    value: Option<&'v Value>,
+    path: &str,
+) -> Option<(String, &'v Value, Option<&'v Value>)> {
+    match (with, value) {
+        (Value::Object(keys), Some(value)) => keys.iter().find_map(|(key, with)| {
+            let path = if path.is_empty() {
+                key.clone()
+            } else {
+                format!("{path}.{key}")
+            };
+            difference(with, value.get(key), &path)
+        }),
+        (Value::Null, _) => None,
+        (_, Some(value)) if fits(with, value) => None,
+        _ => Some((path.to_owned(), with, value)),
+    }
+}
+
 /// Removes a key from a message. Returns `false` if the message lacks it.
 pub(crate) fn omit(message: &mut Value, path: &[String]) -> bool {
     let Some((last, path)) = path.split_last() else {
