@@ -1,7 +1,7 @@
 //! `fcproto certify`.
 
 use std::path::PathBuf;
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use fc_codegen::inspect::fingerprint;
 use fc_reflect::Reflector;
@@ -12,7 +12,7 @@ use fc_workshop::facts;
 use fc_workshop::run::{Interrupt, block_on};
 
 use crate::allow::Allowed;
-use crate::endpoint::with_port;
+use crate::endpoint::{self, Ports, with_port};
 use crate::help::{Help, Part};
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
@@ -23,13 +23,33 @@ use crate::spec::Spec;
 
 /// Options of `fcproto certify`.
 #[derive(Debug, clap::Args)]
+#[command(group(clap::ArgGroup::new("device").required(true)))]
 pub struct Options {
     #[arg(
         long,
         value_name = "HOST[:PORT]",
-        help = both("机器人的地址；端口默认按规范", "Address of the robot; the port is that of the spec by default")
+        group = "device",
+        conflicts_with_all = ["host", "command_port", "data_port"],
+        help = both("检验这个机器人；端口默认按规范", "Test this robot; the port is that of the spec by default")
     )]
-    robot: String,
+    robot: Option<String>,
+    #[arg(
+        long,
+        group = "device",
+        conflicts_with_all = ["allow", "only"],
+        help = both("检验下一个连接的 app", "Test the app that connects next")
+    )]
+    app: bool,
+    #[command(flatten)]
+    ports: Ports,
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "60",
+        value_parser = clap::value_parser!(u64).range(1..=86_400),
+        help = both("等待 app 连接的秒数", "Seconds to wait for the app")
+    )]
+    wait: u64,
     #[arg(
         long,
         value_name = "DIR",
@@ -60,8 +80,8 @@ pub struct Options {
 pub fn help() -> Help {
     Help {
         summary: both(
-            "检验机器人是否符合规范，并出具证书",
-            "Test a robot against the spec and write a certificate",
+            "检验机器人或 app 是否符合规范，并出具证书",
+            "Certify a robot or an app by the spec",
         ),
         details: vec![
             Part::Text(both(
@@ -70,6 +90,11 @@ pub fn help() -> Help {
                 "Runs trials against a robot: the example of each command; ids, split, pipelined and compressed requests; missing and wrong \
                  keys; damaged frames; repetition and acknowledgement of reports. Each trial is a line. The certificate is a page and a JSON \
                  file in both languages, with the bytes of failed trials and the fingerprint of the spec.",
+            )),
+            Part::Text(both(
+                "`--app` 扮演机器人，检验连接的 app：它的请求，每种上报的应答，重发、分段、压缩和损坏的上报，以及断线后的重新连接。",
+                "`--app` plays the robot and tests the app that connects: its requests, the acknowledgement of each report, repeated, split, \
+                 compressed and damaged reports, and its new connection after a loss.",
             )),
             Part::Text(both(
                 "只发送影响为 `read` 的指令；`--allow` 允许更多。",
@@ -98,22 +123,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Ok(spec.status());
     };
     let reflector = &Reflector::new(model);
-    let port = model.transport.ports.command.number;
-    let settings = Settings {
-        address: with_port(&options.robot, port),
-        allowed: effects(options.allow),
-        only: options.only.clone(),
-    };
     let start = SystemTime::now();
-    let trials: Result<_, Failure> = block_on(async {
-        let mut interrupt = Interrupt::new()?;
-        let wait = facts::call_timeout(model);
-        drop(Client::connect(reflector, &settings.address, wait).await?);
-        let mut told = |trial: &Trial| show(options.format, trial);
-        Ok(certify::robot(reflector, &settings, &mut told, interrupt.next()).await)
-    })?;
-    let trials = match trials {
-        Ok(Some(trials)) => trials,
+    let tested = match &options.robot {
+        Some(robot) => test_robot(reflector, options, robot),
+        None => test_app(reflector, options),
+    };
+    let (address, trials) = match tested {
+        Ok(Some(tested)) => tested,
         // Ctrl-C: an incomplete certificate is none.
         Ok(None) => return Ok(Status::Faulty),
         Err(failure) if failure.is::<ClientError>() => {
@@ -123,13 +139,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Err(failure) => return Err(failure),
     };
     let certificate = Certificate {
-        address: settings.address,
+        address,
         protocol: model.protocol.id.clone(),
         version: model.protocol.version.clone(),
         fingerprint: fingerprint(model),
         program: env!("CARGO_PKG_VERSION").to_owned(),
         start,
-        only: settings.only,
+        only: options.only.clone(),
         duration: start.elapsed().unwrap_or_default(),
         trials,
     };
@@ -153,6 +169,50 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     } else {
         Status::Faulty
     })
+}
+
+/// The address of a device, and its trials.
+type Tested = (String, Vec<Trial>);
+
+fn test_robot(
+    reflector: &Reflector<'_>,
+    options: &Options,
+    robot: &str,
+) -> Result<Option<Tested>, Failure> {
+    let model = reflector.model();
+    let settings = Settings {
+        address: with_port(robot, model.transport.ports.command.number),
+        allowed: effects(options.allow),
+        only: options.only.clone(),
+    };
+    let trials: Result<_, Failure> = block_on(async {
+        let mut interrupt = Interrupt::new()?;
+        let wait = facts::call_timeout(model);
+        drop(Client::connect(reflector, &settings.address, wait).await?);
+        let mut told = |trial: &Trial| show(options.format, trial);
+        Ok(certify::robot(reflector, &settings, &mut told, interrupt.next()).await)
+    })?;
+    Ok(trials?.map(|trials| (settings.address, trials)))
+}
+
+fn test_app(reflector: &Reflector<'_>, options: &Options) -> Result<Option<Tested>, Failure> {
+    let model = reflector.model();
+    block_on(async {
+        let listeners = options.ports.listen(model).await?;
+        let addresses = listeners.addresses()?;
+        // Before the first line, because its reader may end the program at once.
+        let mut interrupt = Interrupt::new()?;
+        print::result(&endpoint::line(addresses))?;
+        let wait = Duration::from_secs(options.wait);
+        let mut told = |trial: &Trial| show(options.format, trial);
+        let end = interrupt.next();
+        let trials = certify::app(reflector, listeners, wait, &mut told, end).await;
+        if trials.is_none() {
+            let error = said!("没有 app 连接", "no app has connected");
+            print::failure(Failure::from(error).as_ref());
+        }
+        Ok(trials.map(|trials| (addresses.0.to_string(), trials)))
+    })?
 }
 
 /// Returns the effects that may be caused.

@@ -53,3 +53,12 @@ fn a_device_that_is_not_there_has_no_certificate() {
     drop(mock);
     project.fc(&["certify", "--robot", &address]).expect(4);
 }
+
+#[test]
+fn without_an_app_there_is_no_certificate() {
+    let project = Project::new();
+    let ports = ["--command-port", "0", "--data-port", "0"];
+    let certify = ["certify", "--app", "--wait", "1", "--lang", "en"];
+    let run = project.fc(&[&certify[..], &ports].concat()).expect(1);
+    assert!(run.stderr.contains("no app has connected"), "{run:?}");
+}

@@ -40,20 +40,30 @@ pub(super) struct Evidence {
 }
 
 impl Evidence {
+    /// Adds sent bytes.
+    pub(super) fn sent(&mut self, bytes: &[u8]) {
+        if self.sent.len() < SHOWN {
+            self.sent.push(bytes.to_vec());
+        }
+    }
+
+    /// Adds received bytes.
+    pub(super) fn received(&mut self, bytes: Vec<u8>) {
+        if self.received.len() < SHOWN {
+            self.received.push(bytes);
+        }
+    }
+
     /// Returns the outcome of a trial with this result.
-    pub(super) fn outcome(mut self, result: Step) -> Outcome {
+    pub(super) fn outcome(self, result: Step) -> Outcome {
         match result {
             Ok(()) => Outcome::Passed,
             Err(Stop::Skip(reason)) => Outcome::Skipped(reason),
-            Err(Stop::Deviation(reason)) => {
-                self.sent.truncate(SHOWN);
-                self.received.truncate(SHOWN);
-                Outcome::Failed(Failure {
-                    reason,
-                    sent: self.sent,
-                    received: self.received,
-                })
-            }
+            Err(Stop::Deviation(reason)) => Outcome::Failed(Failure {
+                reason,
+                sent: self.sent,
+                received: self.received,
+            }),
         }
     }
 }
@@ -118,9 +128,7 @@ impl<'r, 'm> Line<'r, 'm> {
 
     /// Sends bytes. The device may have closed the connection already.
     pub(super) async fn send(&mut self, bytes: &[u8]) {
-        if self.evidence.sent.len() < SHOWN {
-            self.evidence.sent.push(bytes.to_vec());
-        }
+        self.evidence.sent(bytes);
         let _ = self.stream.write_all(bytes).await;
     }
 
@@ -137,7 +145,7 @@ impl<'r, 'm> Line<'r, 'm> {
                 Ok(piece) => piece,
                 Err(error) => {
                     let rest = self.frames.rest().to_vec();
-                    self.evidence.received.push(rest);
+                    self.evidence.received(rest);
                     return deviates(text!(
                         "收到的字节不是帧：{error}",
                         "the received bytes are no frame: {error}"
@@ -152,9 +160,7 @@ impl<'r, 'm> Line<'r, 'm> {
                     Ok(Ok(_)) => continue,
                 }
             };
-            if self.evidence.received.len() < SHOWN {
-                self.evidence.received.push(piece.bytes);
-            }
+            self.evidence.received(piece.bytes);
             let frame = match piece.frame {
                 Ok(frame) => frame,
                 Err(_) if self.is_tolerant => continue,

@@ -1,10 +1,12 @@
 //! Trials of a device against the spec, and the certificate of their results.
 //!
 //! ```text
-//! trial ──(robot)──► Line ──bytes──► device       one new connection for each trial
+//! trial ──(robot)──► Line ──bytes──► robot       one new connection for each trial
+//! trial ──(app)────────────bytes──► app         over the connections of the app
 //!   └─► Result ──► Certificate ──json, html──► files
 //! ```
 
+mod app;
 mod checks;
 mod html;
 mod json;
@@ -14,6 +16,7 @@ mod reports;
 mod requests;
 mod robot;
 
+pub use app::app;
 pub use html::page as html;
 pub use json::{line as json_line, text as json};
 pub use robot::robot;

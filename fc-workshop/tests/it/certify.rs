@@ -5,6 +5,8 @@ use fc_reflect::{Direction, Frame, FrameFault, FrameId, Packing, Reflector};
 use fc_spec::model::{Effect, HeaderRole, Model, ResultRole, Value};
 use fc_workshop::arguments::json;
 use fc_workshop::certify::{self, Certificate, Outcome, Settings, Trial};
+use fc_workshop::client::Client;
+use fc_workshop::listen::Listeners;
 use fc_workshop::mock::{self, Mock};
 use fc_workshop::run::block_on;
 use fc_workshop::stream::{FrameStream, Piece};
@@ -354,5 +356,81 @@ fn a_trial_without_commands_is_skipped() {
     for trial in trials {
         assert!(trial.name.starts_with("frame."));
         assert!(matches!(trial.outcome, Outcome::Skipped(_)), "{trial:?}");
+    }
+}
+
+/// The ways in which an app is broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum AppBreak {
+    Nothing,
+    /// It acknowledges no report.
+    IsSilent,
+    /// Its request has a value of another type.
+    SendsOtherType,
+    /// It does not connect again.
+    LeavesForGood,
+}
+
+/// Runs the trials of an app, which calls once and receives reports.
+fn certify_app(model: &Model, way: AppBreak) -> Vec<Trial> {
+    let reflector = Reflector::new(model);
+    let trials = block_on(async {
+        let listeners = Listeners::bind("127.0.0.1", 0, 0).await.unwrap();
+        let address = listeners.addresses().unwrap().0.to_string();
+        let wait = match way {
+            AppBreak::LeavesForGood | AppBreak::IsSilent => Duration::from_millis(500),
+            _ => Duration::from_secs(60),
+        };
+        let mut told = |_: &Trial| {};
+        tokio::select! {
+            trials = certify::app(&reflector, listeners, wait, &mut told, pending()) => trials.unwrap(),
+            () = app(&reflector, &address, way) => unreachable!("the app goes on"),
+        }
+    });
+    trials.unwrap()
+}
+
+async fn app(reflector: &Reflector<'_>, address: &str, way: AppBreak) {
+    let wait = Duration::from_secs(60);
+    loop {
+        if way == AppBreak::IsSilent {
+            let _stream = TcpStream::connect(address).await.unwrap();
+            pending::<()>().await;
+        }
+        let mut client = Client::connect(reflector, address, wait).await.unwrap();
+        let command = reflector.model().operation("set_light").unwrap();
+        let id = reflector.id(command, Direction::Request, 0).unwrap();
+        let body: &[u8] = match way {
+            AppBreak::SendsOtherType => br#"{"lvl":"high"}"#,
+            _ => br#"{"lvl":7}"#,
+        };
+        let _ = client.call(id.kind, id.code, body.into(), wait).await;
+        while client.report(wait).await.is_ok() {}
+        if way == AppBreak::LeavesForGood {
+            pending::<()>().await;
+        }
+    }
+}
+
+#[test]
+fn good_and_broken_apps() {
+    let model = &model();
+    for (way, failed, skipped) in [
+        (AppBreak::Nothing, None, None),
+        (AppBreak::IsSilent, Some("report.dimmed"), None),
+        (AppBreak::SendsOtherType, Some("request.valid"), None),
+        (AppBreak::LeavesForGood, None, Some("connection.lost")),
+    ] {
+        let trials = certify_app(model, way);
+        let first = |is_it: &dyn Fn(&Outcome) -> bool| {
+            let mut found = trials.iter().filter(|trial| is_it(&trial.outcome));
+            found.next().map(|trial| trial.name.as_str())
+        };
+        let has_failed = |outcome: &Outcome| matches!(outcome, Outcome::Failed(_));
+        let is_skipped = |outcome: &Outcome| matches!(outcome, Outcome::Skipped(_));
+        assert_eq!(first(&has_failed), failed, "{way:?}: {trials:?}");
+        // A silent app also sends no request.
+        let skipped = skipped.or((way == AppBreak::IsSilent).then_some("connection.lost"));
+        assert_eq!(first(&is_skipped), skipped, "{way:?}");
     }
 }
