@@ -22,8 +22,6 @@ import type {
  * 定位：请求
  * Locate: request
  *
- * Code 0x0001. Only reads.
- *
  * Spec: `commands.locate` in `spec/commands/place.yaml`.
  */
 export interface LocateRequest {
@@ -61,8 +59,6 @@ export interface LocateResponse {
 /**
  * 闪烁：请求
  * Blink: request
- *
- * Code 0x0002. Changes the configuration. May be refused with `5`.
  *
  * Spec: `commands.blink` in `spec/commands/place.yaml`.
  */
@@ -106,8 +102,6 @@ export interface BlinkResponse {
 /**
  * 发声：请求
  * Sound: request
- *
- * Code 0x0003. Moves the robot.
  *
  * Spec: `commands.sound` in `spec/commands/place.yaml`.
  */

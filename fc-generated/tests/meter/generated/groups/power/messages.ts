@@ -23,8 +23,6 @@ import type {
  * 读取电能：请求
  * Read the power: request
  *
- * Code 0x1001. Only reads.
- *
  * Spec: `commands.read_power` in `spec/commands/power.yaml`.
  */
 export interface ReadPowerRequest {
@@ -70,12 +68,6 @@ export interface ReadPowerResponse {
 /**
  * 设置费率：请求
  * Set the tariff: request
- *
- * Code 0x1002. Changes the configuration. Kept in `tariff_table`. May be refused with `18`, `20`.
- *
- * `18`：该时段没有这个价格
- *
- * `18`: The band does not have this price
  *
  * Spec: `commands.set_tariff` in `spec/commands/power.yaml`.
  */
@@ -197,17 +189,6 @@ export interface SetTariffResponse {
  * 合闸：请求
  * Close the switch: request
  *
- * Code 0x1003. Moves the robot. Accepted only when `Switch` is `"open"` or `"stuck"`. Send first: `read_power`. May be
- * refused with `20`. Only for `installer_app`.
- *
- * 先看有没有电压。
- *
- * Look for a voltage first.
- *
- * `20`：有人在现场锁定了开关
- *
- * `20`: Somebody has locked the switch on site
- *
  * Spec: `commands.close_switch` in `spec/commands/power.yaml`.
  */
 export interface CloseSwitchRequest {
@@ -277,8 +258,6 @@ export interface CloseSwitchResponse {
 /**
  * 开始或停止发送负荷：请求
  * Start or stop sending the load: request
- *
- * Code 0x1004. Changes the configuration.
  *
  * Spec: `commands.watch_load` in `spec/commands/power.yaml`.
  */
