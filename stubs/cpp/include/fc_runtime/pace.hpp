@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 
+#include "fc_runtime/frame.hpp"
 #include "fc_runtime/session.hpp"
 
 namespace fc_runtime::detail {
