@@ -56,16 +56,22 @@ test('the language switch stays on the same page', driven, async () => {
     for (const url of ['/index.html', '/reference/commands/get_robot_sn.html', '/reference/open-questions.html', '/lab/index.html', '/guides/first-call.html', '/spec/commands/cell.html']) {
       await page.goto(base + url)
       await alive(page)
-      const to = async (word) => {
+      // On a busy machine, the menu may close before the click.
+      const to = async (word, isThere, attempts = 3) => {
         await page.locator('.VPNavBarTranslations button').hover()
         await page.locator('.VPNavBarTranslations').getByText(word, { exact: true }).click()
+        try {
+          await page.waitForURL((now) => isThere(now.pathname), { timeout: 15_000 })
+        } catch (error) {
+          if (attempts === 1) throw error
+          await page.mouse.move(0, 500)
+          await to(word, isThere, attempts - 1)
+        }
       }
       const bare = (url) => url.replace(/index\.html$/, '')
-      await to('English')
-      await page.waitForURL((now) => now.pathname.startsWith('/en/'))
+      await to('English', (path) => path.startsWith('/en/'))
       assert.equal(bare(new URL(page.url()).pathname), bare('/en' + url))
-      await to('简体中文')
-      await page.waitForURL((now) => !now.pathname.startsWith('/en/'))
+      await to('简体中文', (path) => !path.startsWith('/en/'))
       assert.equal(bare(new URL(page.url()).pathname), bare(url))
     }
     assert.deepEqual(faults, [])
