@@ -150,6 +150,13 @@ impl<'r, 'm> Decoder<'r, 'm> {
         }
     }
 
+    /// Returns the bytes of memory that the buffers of all flows take.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let memory = |state: &State<'_, '_>| state.scanner.memory();
+        self.flows.values().map(memory).sum()
+    }
+
     /// Reads the next bytes of a flow. `sink` receives each record.
     ///
     /// # Errors
@@ -171,6 +178,7 @@ impl<'r, 'm> Decoder<'r, 'm> {
         while let Some(piece) = state.scanner.next_piece(false) {
             sink(&record(reflector, &mut self.pairs, flow, time, piece))?;
         }
+        state.scanner.release();
         self.shed(sink)
     }
 
@@ -232,6 +240,7 @@ impl<'r, 'm> Decoder<'r, 'm> {
         while let Some(piece) = scanner.next_piece(true) {
             sink(&record(self.reflector, &mut self.pairs, flow, *time, piece))?;
         }
+        scanner.release();
         Ok(())
     }
 

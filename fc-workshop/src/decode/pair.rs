@@ -22,10 +22,20 @@ pub struct Request {
 type Asked = (Option<Flow>, FrameId);
 
 /// Requests without a response.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Pairs {
     open: HashMap<Asked, (u64, Option<Duration>)>,
     order: VecDeque<Asked>,
+}
+
+impl Default for Pairs {
+    fn default() -> Self {
+        Self {
+            // A full table with many removals grows once more. Room for that is taken at once, so memory stays level.
+            open: HashMap::with_capacity(2 * KEPT),
+            order: VecDeque::new(),
+        }
+    }
 }
 
 impl Pairs {

@@ -7,6 +7,9 @@ use std::borrow::Cow;
 /// Candidates for a frame inside a damaged frame that are tried.
 const CANDIDATES: usize = 16;
 
+/// Bytes of memory that a scanner keeps for the next frame.
+const ROOM: usize = 4096;
+
 /// A frame, or bytes that are none.
 pub struct Piece<'b, 'm> {
     /// The position of the first byte in the input.
@@ -74,17 +77,30 @@ impl<'r, 'm> Scanner<'r, 'm> {
         }
     }
 
-    /// Adds the next bytes. Call [`next_piece`](Self::next_piece) until it returns `None` before adding more.
+    /// Adds the next bytes. Call [`next_piece`](Self::next_piece) until it returns `None`, then
+    /// [`release`](Self::release), before adding more.
     pub fn push(&mut self, bytes: &[u8]) {
-        if self.start > 0 {
-            self.buffer.drain(..self.start);
-            self.start = 0;
-        }
         self.buffer.extend_from_slice(bytes);
         self.effort = self.effort.saturating_add(bytes.len().saturating_mul(4));
     }
 
-    /// Returns the number of bytes that are kept.
+    /// Frees the memory of the pieces that were returned.
+    pub fn release(&mut self) {
+        self.buffer.drain(..self.start);
+        self.start = 0;
+        let room = self.buffer.len().max(ROOM);
+        if self.buffer.capacity() > 2 * room {
+            self.buffer.shrink_to(room);
+        }
+    }
+
+    /// Returns the number of bytes of memory that the buffer takes.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.buffer.capacity()
+    }
+
+    /// Returns the number of bytes of an incomplete frame.
     #[must_use]
     pub fn kept(&self) -> usize {
         self.buffer.len()

@@ -1,11 +1,15 @@
 //! Damaged bytes: the next whole frame is found, and time and memory are bounded.
 
 use super::{error, lines, read, sampled};
-use crate::support::small;
-use fc_workshop::decode::Format;
+use crate::support::{small, small_with};
+use fc_reflect::{Direction, Packing, Reflector};
+use fc_workshop::capture::Flow;
+use fc_workshop::decode::{Decoder, Format, Record};
 use proptest::prelude::*;
 use serde_json::Value;
+use std::convert::Infallible;
 use std::io::Read;
+use std::net::SocketAddr;
 
 fn shown(lines: &[Value]) -> Vec<(u64, u64, &str)> {
     let number = |line: &Value, key: &str| line[key].as_u64().unwrap();
@@ -60,6 +64,34 @@ fn frames_inside_an_incomplete_frame_are_found() {
         (2 * length, 30, "truncated"),
     ];
     assert_eq!(shown(&found), expected);
+}
+
+#[test]
+fn the_memory_of_long_frames_is_freed() {
+    let model = small_with(|text| text.replace("frame_bytes: 4096", "frame_bytes: 65536"));
+    let reflector = Reflector::new(&model);
+    let operation = model.operation("dimmed").unwrap();
+    let id = reflector.id(operation, Direction::Request, 7).unwrap();
+    let long = reflector
+        .seal(id, &vec![b' '; 60_000], Packing::Plain)
+        .unwrap();
+    let mut decoder = Decoder::new(&reflector);
+    let mut frames = 0;
+    for port in 1..100 {
+        let from = SocketAddr::from(([127, 0, 0, 1], port));
+        let to = SocketAddr::from(([127, 0, 0, 2], 1));
+        let count = &mut |_: &Record<'_>| {
+            frames += 1;
+            Ok::<_, Infallible>(())
+        };
+        // The beginning of the next frame follows.
+        for part in [&long[..50_000], &[&long[50_000..], &long[..9]].concat()] {
+            let flow = Some(Flow { from, to });
+            let Ok(()) = decoder.push(flow, None, part, count);
+        }
+    }
+    assert_eq!(frames, 99);
+    assert!(decoder.memory() < 99 * 10_000, "{}", decoder.memory());
 }
 
 /// Pieces of valid frames and noise, so that random input reaches the deeper checks.
