@@ -47,6 +47,9 @@ enum Input {
     Capture,
     #[value(help = both("`tcpdump -x` 或 `tcpdump -X` 的文本", "The text of `tcpdump -x` or `tcpdump -X`"))]
     Tcpdump,
+    #[cfg(feature = "record")]
+    #[value(help = both("MCAP 录制文件", "A recording in MCAP"))]
+    Mcap,
 }
 
 impl From<Input> for decode::Format {
@@ -57,6 +60,8 @@ impl From<Input> for decode::Format {
             Input::Base64 => Self::Base64,
             Input::Capture => Self::Capture,
             Input::Tcpdump => Self::Tcpdump,
+            #[cfg(feature = "record")]
+            Input::Mcap => Self::Recording,
         }
     }
 }

@@ -134,3 +134,15 @@ fn unreadable_input_is_named() {
         assert!(run.stderr.contains(expected), "{run:#?}");
     }
 }
+
+#[cfg(not(feature = "record"))]
+#[test]
+fn a_recording_needs_the_feature() {
+    let project = Project::new();
+    let bytes = b"\x89MCAP0\r\n\x01";
+    std::fs::write(project.path("run.mcap"), bytes).expect("the folder is writable");
+    let run = project
+        .fc(&["decode", "run.mcap", "--lang", "en"])
+        .expect(2);
+    assert!(run.stderr.contains("--features record"), "{run:?}");
+}

@@ -1,4 +1,4 @@
-//! `fcproto record`, and the proxy with `--record`.
+//! `fcproto record`, the proxy with `--record`, and their recordings as input.
 
 use crate::support::Project;
 use crate::support::robot::Robot;
@@ -20,6 +20,36 @@ fn traffic_is_recorded() {
     proxy.call(&project, &["get_level"]).expect(0);
     proxy.stop("-INT").expect(0);
     assert!(is_whole(&project, "live.mcap"));
+    let decode = ["decode", "live.mcap", "--format", "json"];
+    let run = project.fc(&decode).expect(0);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    let [request, response] = lines[..] else {
+        panic!("{run:?}");
+    };
+    assert!(request.contains(r#""connection":"127.0.0.1:"#), "{request}");
+    assert!(response.contains(r#""request":"#), "{response}");
+    project.fc(&["drift", "live.mcap"]).expect(0);
+    let replay = Robot::mock(&project, &["--replay", "live.mcap"]);
+    replay.call(&project, &["get_level"]).expect(0);
+}
+
+#[test]
+fn the_frames_before_a_cut_are_read() {
+    let project = Project::new();
+    let frame = project.fc(&["encode", "get_level"]).expect(0);
+    project.write("frame.hex", &frame.stdout);
+    project
+        .fc(&["record", "frame.hex", "--out", "run.mcap"])
+        .expect(0);
+    let path = project.path("run.mcap");
+    let mut bytes = std::fs::read(&path).expect("a recording");
+    bytes.truncate(bytes.len() - 10);
+    std::fs::write(&path, bytes).expect("the folder is writable");
+    let run = project
+        .fc(&["decode", "run.mcap", "--lang", "en"])
+        .expect(2);
+    assert!(run.stdout.contains("get_level request"), "{run:?}");
+    assert!(run.stderr.contains("the recording ends early"), "{run:?}");
 }
 
 #[test]

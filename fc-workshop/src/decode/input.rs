@@ -22,7 +22,12 @@ pub enum Format {
     Capture,
     /// The text of `tcpdump -x` or `tcpdump -X`.
     Tcpdump,
+    /// A recording in MCAP. Reading it needs the feature `record`.
+    Recording,
 }
+
+/// The first bytes of a recording in MCAP.
+const RECORDING: &[u8] = b"\x89MCAP";
 
 /// The first bytes of captures: pcap in both byte orders and resolutions, and pcapng.
 const CAPTURES: [[u8; 4]; 5] = [
@@ -67,6 +72,9 @@ impl Format {
             .any(|head| beginning.starts_with(head));
         if !is_frame && CAPTURES.iter().any(|magic| beginning.starts_with(magic)) {
             return Self::Capture;
+        }
+        if !is_frame && beginning.starts_with(RECORDING) {
+            return Self::Recording;
         }
         let is_text = |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
         if is_frame || !beginning.iter().all(is_text) {

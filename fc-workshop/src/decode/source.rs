@@ -78,7 +78,54 @@ pub fn read<'m, R: Read + Send>(
             let read = capture::read_text(input, &ports, &mut receiver(&mut decoder, sink));
             captured(read, &ports)
         }
+        Format::Recording => read_recording(&mut decoder, input, sink),
     }
+}
+
+#[cfg(feature = "record")]
+fn read_recording<'m>(
+    decoder: &mut Decoder<'_, 'm>,
+    input: impl Read,
+    sink: &mut dyn FnMut(&Record<'m>) -> io::Result<()>,
+) -> Result<(), DecodeError> {
+    use crate::recording::{ReadError, read};
+    let read = read(input, &mut |flow, time, bytes| {
+        decoder.push(flow, time, bytes, sink)?;
+        // The recording has the frames one by one.
+        decoder.skip(flow, 0, sink)
+    });
+    let error = match read {
+        Ok(()) => return Ok(()),
+        Err(ReadError::Input(error)) => return Err(DecodeError::Read(error)),
+        Err(ReadError::Receiver(error)) => return Err(DecodeError::Sink(error)),
+        Err(ReadError::Cut) => text!(
+            "录制文件不完整；前面的帧已显示",
+            "the recording ends early; the frames before its end are shown"
+        ),
+        Err(ReadError::Compressed(name)) => text!(
+            "录制文件用 {name} 压缩；请先用 `mcap decompress` 解压",
+            "the recording is compressed with {name}; unpack it with `mcap decompress`",
+            name = name
+        ),
+        Err(ReadError::Damaged(_)) => text!(
+            "录制文件已损坏；请用 `mcap recover` 修复",
+            "the recording is damaged; repair it with `mcap recover`"
+        ),
+    };
+    Err(InputError::new(error).into())
+}
+
+#[cfg(not(feature = "record"))]
+fn read_recording<'m>(
+    _decoder: &mut Decoder<'_, 'm>,
+    _input: impl Read,
+    _sink: &mut dyn FnMut(&Record<'m>) -> io::Result<()>,
+) -> Result<(), DecodeError> {
+    Err(InputError::new(text!(
+        "这个 fcproto 不能读 MCAP；用 --features record 安装",
+        "this fcproto cannot read MCAP; install it with --features record"
+    ))
+    .into())
 }
 
 fn read_bytes<'m>(
