@@ -47,6 +47,8 @@ mod settle;
 mod shell;
 mod spec;
 mod versions;
+#[cfg(feature = "view")]
+mod view;
 mod watch;
 
 use std::process::ExitCode;

@@ -1,13 +1,18 @@
 //! `fcproto proxy`.
 
+#[cfg(feature = "view")]
+use std::cell::RefCell;
 use std::io;
 
 use fc_reflect::Reflector;
 use fc_spec::model::{HeaderRole, Model};
 use fc_workshop::decode;
 use fc_workshop::fault::Fault;
-use fc_workshop::proxy::{Event, Settings, serve};
+use fc_workshop::listen::Listeners;
+use fc_workshop::proxy::{Event, Settings, Sink, serve};
 use fc_workshop::run::{Interrupt, block_on};
+#[cfg(feature = "view")]
+use fc_workshop::view::View;
 use serde_json::json;
 
 use crate::endpoint::{self, Ports, at_port, with_port};
@@ -56,6 +61,13 @@ pub struct Options {
         help = both("同时写入 MCAP 文件", "Also write an MCAP file")
     )]
     record: Option<std::path::PathBuf>,
+    #[cfg(feature = "view")]
+    #[arg(
+        long,
+        conflicts_with = "format",
+        help = both("在终端中查看、过滤、暂停和展开", "Show, filter, pause and open frames on the terminal")
+    )]
+    view: bool,
     #[arg(
         long,
         value_name = "FORMAT",
@@ -126,42 +138,66 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     block_on(forward(model, options, &settings))?
 }
 
-async fn forward<'m>(
-    model: &'m Model,
-    options: &Options,
-    settings: &Settings,
-) -> Result<Status, Failure> {
-    let reflector = Reflector::new(model);
+async fn forward(model: &Model, options: &Options, settings: &Settings) -> Result<Status, Failure> {
+    #[cfg(feature = "view")]
+    if options.view {
+        crate::view::needs_terminal()?;
+    }
     let listeners = options.ports.listen(model).await?;
     let addresses = listeners.addresses()?;
     // Before the first line, because its reader may end the proxy at once.
     let mut interrupt = Interrupt::new()?;
     print::result(&endpoint::line(addresses))?;
     if !settings.faults.is_empty() && options.seed.is_none() {
-        let seed = settings.seed;
-        print::result(&match options.format {
-            Shown::Text => said!("种子 {seed}\n", "seed {seed}\n"),
-            Shown::Json => json!({ "seed": seed }).to_string() + "\n",
-        })?;
+        print::result(&seed(settings.seed, options.format))?;
     }
-    #[cfg(feature = "record")]
-    let mut recorder = match &options.record {
-        Some(path) => Some(crate::record::recorder(model, path)?),
-        None => None,
-    };
-    let show = &mut |event: Event<'_, 'm>| {
-        #[cfg(feature = "record")]
-        if let (Event::Record(record), Some(recorder)) = (&event, &mut recorder) {
-            recorder.add(record).map_err(io::Error::other)?;
-        }
-        show(model, options.format, &event)
-    };
-    serve(&reflector, settings, listeners, show, interrupt.next()).await?;
-    #[cfg(feature = "record")]
-    if let Some(recorder) = recorder {
-        recorder.finish()?;
+    #[cfg(feature = "view")]
+    if options.view {
+        let title = endpoint::line(addresses);
+        let view = &RefCell::new(View::new(model, lang(), title.trim_end().to_owned()));
+        let sink = &mut crate::view::sink(view);
+        let mut left = Ok(());
+        let end = async { left = crate::view::show(view, &mut interrupt).await };
+        relay(model, options, settings, listeners, sink, end).await?;
+        left?;
+        return Ok(Status::Fine);
     }
+    let sink = &mut |event: Event<'_, '_>| show(model, options.format, &event);
+    relay(model, options, settings, listeners, sink, interrupt.next()).await?;
     Ok(Status::Fine)
+}
+
+/// Forwards connections until `end` is ready, and records them if that is wished.
+#[cfg_attr(not(feature = "record"), expect(unused_variables))]
+async fn relay<'m>(
+    model: &'m Model,
+    options: &Options,
+    settings: &Settings,
+    listeners: Listeners,
+    sink: &mut Sink<'_, 'm>,
+    end: impl Future<Output = ()>,
+) -> Result<(), Failure> {
+    let reflector = Reflector::new(model);
+    #[cfg(feature = "record")]
+    if let Some(path) = &options.record {
+        let mut recorder = crate::record::recorder(model, path)?;
+        let record = &mut |event: Event<'_, 'm>| {
+            if let Event::Record(record) = &event {
+                recorder.add(record).map_err(io::Error::other)?;
+            }
+            sink(event)
+        };
+        serve(&reflector, settings, listeners, record, end).await?;
+        return Ok(recorder.finish()?);
+    }
+    Ok(serve(&reflector, settings, listeners, sink, end).await?)
+}
+
+fn seed(seed: u64, format: Shown) -> String {
+    match format {
+        Shown::Text => said!("种子 {seed}\n", "seed {seed}\n"),
+        Shown::Json => json!({ "seed": seed }).to_string() + "\n",
+    }
 }
 
 fn show(model: &Model, format: Shown, event: &Event<'_, '_>) -> io::Result<()> {

@@ -27,3 +27,5 @@ pub mod run;
 pub mod scenario;
 pub mod stream;
 pub mod table;
+#[cfg(feature = "view")]
+pub mod view;

@@ -51,6 +51,8 @@ mod retire;
 mod shell;
 mod support;
 mod targets;
+#[cfg(all(unix, feature = "view"))]
+mod view;
 mod warnings;
 mod watch;
 mod where_;

@@ -189,6 +189,7 @@ const CRATES: &[Crate] = &[
             "proxy",
             "certify",
             "recording",
+            "view",
         ],
         upwards: &[],
     },

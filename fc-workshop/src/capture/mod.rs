@@ -7,6 +7,8 @@
 //! ```
 
 mod file;
+#[cfg(feature = "record")]
+pub mod mcap;
 mod packet;
 mod tcp;
 mod text;

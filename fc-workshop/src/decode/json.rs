@@ -99,6 +99,6 @@ fn body(record: &Record<'_>) -> Option<Box<RawValue>> {
 }
 
 /// Returns a duration in milliseconds.
-pub(super) fn milliseconds(duration: Duration) -> f64 {
+pub(crate) fn milliseconds(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1000.0
 }

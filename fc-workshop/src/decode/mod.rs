@@ -16,6 +16,7 @@ mod text;
 pub use error_text::text as error_text;
 pub use input::{Format, InputError};
 pub use json::line as json;
+pub(crate) use json::milliseconds;
 pub use pair::Request;
 pub use source::{DecodeError, Source, read};
 pub(crate) use text::{clipped, clock, scalar};

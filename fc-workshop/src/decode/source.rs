@@ -88,7 +88,7 @@ fn read_recording<'m>(
     input: impl Read,
     sink: &mut dyn FnMut(&Record<'m>) -> io::Result<()>,
 ) -> Result<(), DecodeError> {
-    use crate::recording::{ReadError, read};
+    use crate::capture::mcap::{ReadError, read};
     let read = read(input, &mut |flow, time, bytes| {
         decoder.push(flow, time, bytes, sink)?;
         // The recording has the frames one by one.

@@ -1,6 +1,6 @@
 //! Records as text for people.
 
-use super::{Record, RecordError, error_text, json::milliseconds};
+use super::{Record, RecordError, error_text, milliseconds};
 use fc_reflect::{About, HeaderContent, HeaderValue, Key, Leniency, Node, Value, walk};
 use fc_spec::model::{
     Direction, EncodingRole, EnvelopeRole, HeaderRole, Lang, Model, Number, Scalar,

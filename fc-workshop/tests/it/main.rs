@@ -23,5 +23,7 @@ mod mock;
 mod scenarios;
 mod sessions;
 mod support;
+#[cfg(feature = "view")]
+mod view;
 #[path = "../../../fc-spec/tests/it/yaml_as_json.rs"]
 mod yaml_as_json;

@@ -1,7 +1,6 @@
-//! Reads the frames of a recording.
+//! Reads the frames of recordings in MCAP.
 
-use super::{CHUNK, FRAMES, FROM, TO};
-use crate::capture::Flow;
+use super::Flow;
 use mcap::records::{Channel, Record};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{McapError, parse_record};
@@ -9,6 +8,18 @@ use std::collections::HashMap;
 use std::io::{self, BufReader, Read};
 use std::time::Duration;
 use thiserror::Error;
+
+/// The topic of the frames. It has a channel for each direction of a connection.
+pub const FRAMES: &str = "/fc/frames";
+
+/// The metadata of such a channel with the address of the sender.
+pub const FROM: &str = "from";
+
+/// The metadata of such a channel with the address of the receiver.
+pub const TO: &str = "to";
+
+/// The bytes that are read at a time.
+const BUFFER: usize = 64 << 10;
 
 /// The maximum size of a record. The spec is an attachment, and a picture is base64 in JSON.
 const LARGEST: usize = 256 << 20;
@@ -55,7 +66,7 @@ pub fn read(input: impl Read, receiver: &mut Receiver<'_>) -> Result<(), ReadErr
         .with_validate_chunk_crcs(true)
         .with_record_length_limit(LARGEST);
     let mut reader = LinearReader::new_with_options(options);
-    let mut input = BufReader::with_capacity(CHUNK, input);
+    let mut input = BufReader::with_capacity(BUFFER, input);
     let mut flows = HashMap::new();
     while let Some(event) = reader.next_event() {
         match event? {

@@ -1,0 +1,106 @@
+//! The terminal of `fcproto proxy --view`.
+
+use std::cell::RefCell;
+use std::future::pending;
+use std::io::{self, IsTerminal as _};
+use std::thread;
+use std::time::Duration;
+
+use fc_workshop::proxy::Event;
+use fc_workshop::run::Interrupt;
+use fc_workshop::view::{View, Wish};
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::event::{self, Event as Input, KeyEvent, KeyEventKind};
+use tokio::sync::mpsc::{Receiver, channel};
+use tokio::time::{MissedTickBehavior, interval};
+
+use crate::lang::said;
+use crate::outcome::Failure;
+use crate::progress;
+
+/// The time between two pictures. More of them would take the processor from the traffic.
+const PICTURE: Duration = Duration::from_millis(100);
+
+/// Keys that wait.
+const KEYS: usize = 64;
+
+/// Returns the sink of a proxy that fills a view.
+pub fn sink<'m>(view: &RefCell<View<'m>>) -> impl FnMut(Event<'_, 'm>) -> io::Result<()> {
+    |event| {
+        view.borrow_mut().add(&event);
+        Ok(())
+    }
+}
+
+/// Shows a view until a person leaves it or a signal comes. The terminal is as before afterwards.
+///
+/// # Errors
+/// The terminal cannot be used.
+pub async fn show(view: &RefCell<View<'_>>, interrupt: &mut Interrupt) -> io::Result<()> {
+    let mut terminal = ratatui::try_init()?;
+    let shown = pictures(&mut terminal, view, interrupt).await;
+    ratatui::restore();
+    shown
+}
+
+async fn pictures(
+    terminal: &mut DefaultTerminal,
+    view: &RefCell<View<'_>>,
+    interrupt: &mut Interrupt,
+) -> io::Result<()> {
+    let mut keys = keys();
+    let mut ticks = interval(PICTURE);
+    ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    loop {
+        terminal.draw(|frame| view.borrow().draw(frame))?;
+        tokio::select! {
+            () = interrupt.next() => return Ok(()),
+            _ = ticks.tick() => {}
+            key = next(&mut keys) => {
+                if view.borrow_mut().press(key?) == Wish::Leave {
+                    return Ok(());
+                }
+            }
+        }
+    }
+}
+
+/// Reads keys on another thread, because reading blocks. The thread ends with the receiver, or with the program.
+fn keys() -> Receiver<io::Result<KeyEvent>> {
+    let (sender, receiver) = channel(KEYS);
+    thread::spawn(move || {
+        loop {
+            let key = match event::read() {
+                Ok(Input::Key(key)) if key.kind != KeyEventKind::Release => Ok(key),
+                Ok(_) => continue,
+                Err(error) => Err(error),
+            };
+            let is_last = key.is_err();
+            if sender.blocking_send(key).is_err() || is_last {
+                return;
+            }
+        }
+    });
+    receiver
+}
+
+/// Waits for the next key. After the last one, it never comes.
+async fn next(keys: &mut Receiver<io::Result<KeyEvent>>) -> io::Result<KeyEvent> {
+    match keys.recv().await {
+        Some(key) => key,
+        None => pending().await,
+    }
+}
+
+/// Checks that standard output is a terminal.
+pub fn needs_terminal() -> Result<(), Failure> {
+    progress::done();
+    if io::stdout().is_terminal() {
+        return Ok(());
+    }
+    Err(said!(
+        "--view 需要终端；去掉它可得到逐行的文本",
+        "--view needs a terminal; leave it out to get lines of text"
+    )
+    .into())
+}
