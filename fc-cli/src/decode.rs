@@ -3,10 +3,12 @@
 use std::io::{self, BufWriter, StdoutLock, Write as _};
 
 use clap::ValueEnum;
+use clap_complete::ArgValueCompleter;
 use fc_reflect::Reflector;
 use fc_spec::model::Model;
 use fc_workshop::decode::{self, Record};
 
+use crate::complete;
 use crate::help::{Help, Part};
 use crate::lang::{both, lang, said};
 use crate::new::code;
@@ -30,6 +32,7 @@ pub struct Options {
     #[arg(
         long = "name",
         value_name = "NAME",
+        add = ArgValueCompleter::new(complete::operations),
         help = both("只显示这些接口的帧", "Show frames of these operations only")
     )]
     names: Vec<String>,

@@ -3,6 +3,7 @@
 use std::io::Write as _;
 
 use clap::ValueEnum;
+use clap_complete::ArgValueCompleter;
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Error, Packing, Reflector};
 use fc_spec::model::Kind;
@@ -10,6 +11,7 @@ use fc_workshop::arguments::Arguments;
 use fc_workshop::decode::hex;
 
 use crate::call::read_json;
+use crate::complete;
 use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
@@ -23,7 +25,7 @@ const LEVEL: u8 = 6;
 /// Options of `fcproto encode`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(value_name = "NAME", help = both("接口的名称", "Name of an operation"))]
+    #[arg(value_name = "NAME", add = ArgValueCompleter::new(complete::operations), help = both("接口的名称", "Name of an operation"))]
     name: String,
     #[arg(
         value_name = "KEY=VALUE",

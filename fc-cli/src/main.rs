@@ -9,6 +9,7 @@ mod certify;
 mod changelog;
 mod check;
 mod codes;
+mod complete;
 mod decode;
 mod diff;
 mod drift;
@@ -54,12 +55,14 @@ mod watch;
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap_complete::CompleteEnv;
 
 use args::{Args, Command};
 use outcome::{Failure, Status};
 
 fn main() -> ExitCode {
     lang::speak(std::env::args_os().skip(1));
+    CompleteEnv::with_factory(shell::command).complete();
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(error) => return help::usage::told(error),

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Command;
 use clap_complete::Shell;
+use clap_complete::env::Shells;
 
 use crate::help::{Help, Part, described};
 use crate::lang::{both, counted, said};
@@ -23,25 +24,32 @@ pub fn completions_help() -> Help {
             "输出 shell 的补全脚本",
             "Print a completion script for a shell",
         ),
-        details: vec![Part::Examples(vec![
-            (
-                "fcproto completions bash > ~/.local/share/bash-completion/completions/fcproto",
-                "",
-            ),
-            (
-                "fcproto completions zsh > ~/.zfunc/_fcproto",
-                both(
-                    "`~/.zfunc` 须在 `$fpath` 中",
-                    "`~/.zfunc` has to be in `$fpath`",
+        details: vec![
+            Part::Text(both(
+                "补全命令和选项；在 `call`、`encode` 和 `decode --name` 后，还按规范补全接口、键和值。脚本在补全时运行 `fcproto`。",
+                "Commands and options are completed. After `call`, `encode` and `decode --name`, so are the operations, keys and values \
+                 of the spec. The script runs `fcproto` at each completion.",
+            )),
+            Part::Examples(vec![
+                (
+                    "fcproto completions bash > ~/.local/share/bash-completion/completions/fcproto",
+                    "",
                 ),
-            ),
-            (
-                "fcproto completions fish > ~/.config/fish/completions/fcproto.fish",
-                "",
-            ),
-        ])],
+                (
+                    "fcproto completions zsh > ~/.zfunc/_fcproto",
+                    both(
+                        "`~/.zfunc` 须在 `$fpath` 中",
+                        "`~/.zfunc` has to be in `$fpath`",
+                    ),
+                ),
+                (
+                    "fcproto completions fish > ~/.config/fish/completions/fcproto.fish",
+                    "",
+                ),
+            ]),
+        ],
         fails: "",
-        speaks: both("命令和选项的说明", "Descriptions of commands and options"),
+        speaks: "",
     }
 }
 
@@ -71,8 +79,12 @@ pub fn man_help() -> Help {
 }
 
 pub fn completions(options: &Completions) -> Result<Status, Failure> {
+    let shell = options.shell.to_string();
+    let shells = Shells::builtins();
     let mut script = Vec::new();
-    clap_complete::generate(options.shell, &mut command(), "fcproto", &mut script);
+    if let Some(completer) = shells.completer(&shell) {
+        completer.write_registration("COMPLETE", "fcproto", "fcproto", "fcproto", &mut script)?;
+    }
     print::result(&String::from_utf8_lossy(&script))?;
     Ok(Status::Fine)
 }
@@ -105,6 +117,6 @@ fn pages(command: &Command) -> usize {
 }
 
 /// Returns the command line without `help`. Each command already has its own page.
-fn command() -> Command {
+pub fn command() -> Command {
     described().disable_help_subcommand(true)
 }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::ValueEnum;
+use clap_complete::ArgValueCompleter;
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Reflector};
 use fc_spec::model::{Kind, Model, Operation, Side, Value};
@@ -15,6 +16,7 @@ use fc_workshop::arguments::{Arguments, json};
 use fc_workshop::facts;
 
 use crate::allow::{self, Allowed};
+use crate::complete;
 use crate::help::{Help, Part};
 use crate::input;
 use crate::lang::{both, lang, said};
@@ -32,12 +34,14 @@ const FOLLOW: &str = "300";
 pub struct Options {
     #[arg(
         value_name = "NAME",
+        add = ArgValueCompleter::new(complete::call),
         required_unless_present_any = ["interactive", "list", "raw"],
         help = both("指令或流的名称", "Name of a command or stream")
     )]
     name: Option<String>,
     #[arg(
         value_name = "KEY=VALUE",
+        add = ArgValueCompleter::new(complete::call),
         help = both("请求的值，例如 `data.x=1.5`", "Values of the request, such as `data.x=1.5`")
     )]
     arguments: Vec<String>,

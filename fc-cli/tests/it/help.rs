@@ -381,8 +381,12 @@ fn no_command_shows_help_as_an_error() {
 
 #[test]
 fn completions_and_manual_pages_follow_the_language() {
-    let script = run(&["completions", "zsh", "--lang", "zh"]).expect(0);
-    assert!(script.stdout.contains("检查规范中的错误"), "{script:#?}");
+    let words = command(&["--", "fcproto", "ch"])
+        .env("COMPLETE", "fish")
+        .env("LC_ALL", "zh_CN.UTF-8")
+        .output();
+    let words = Run::new(&words.expect("the command can be run")).expect(0);
+    assert!(words.stdout.contains("检查规范中的错误"), "{words:#?}");
     let project = crate::support::Project::empty();
     project.fc(&["man", "man1", "--lang", "zh"]).expect(0);
     let page = project.read("man1/fcproto-check.1");
