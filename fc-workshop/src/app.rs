@@ -14,7 +14,12 @@ use std::cell::RefCell;
 use std::io;
 use std::pin::pin;
 use std::time::Duration;
+use tokio::sync::mpsc::Receiver;
+use tokio::sync::mpsc::error::TryRecvError;
 use tokio::time::{Instant, sleep};
+
+/// The time between two looks for a step.
+const STEP: Duration = Duration::from_millis(50);
 
 /// The settings of an app.
 #[derive(Clone, Debug)]
@@ -34,6 +39,8 @@ pub struct Settings {
 /// An observation of an app.
 #[derive(Debug)]
 pub enum Event<'e, 'm> {
+    /// The next command, which waits for a step.
+    Waits(&'e str),
     /// A response, with its time after the request.
     Response(&'m Operation, &'e Frame<'m>, Duration),
     /// A report, or a frame on the data port.
@@ -52,6 +59,7 @@ pub struct App<'r, 'm> {
     /// The connection to the command port; `None` after its end.
     client: Option<Client<'m>>,
     data: Client<'m>,
+    steps: Option<Receiver<()>>,
 }
 
 impl<'r, 'm> App<'r, 'm> {
@@ -69,7 +77,15 @@ impl<'r, 'm> App<'r, 'm> {
             settings,
             client: Some(Client::connect(reflector, &settings.commands, wait).await?),
             data: Client::connect(reflector, &settings.data, wait).await?,
+            steps: None,
         })
+    }
+
+    /// Makes each command wait for a step. After the last step, the commands go on by themselves.
+    #[must_use]
+    pub fn with_steps(mut self, steps: Receiver<()>) -> Self {
+        self.steps = Some(steps);
+        self
     }
 
     /// Plays the app that a scenario expects, until `end` is ready or, with [`Settings::expect`], until it is over.
@@ -88,12 +104,14 @@ impl<'r, 'm> App<'r, 'm> {
             settings,
             client,
             data,
+            steps,
         } = self;
         let sink = &RefCell::new(sink);
         let mut player = Player {
             reflector,
             settings,
             client,
+            steps,
             sink,
             deviations: 0,
         };
@@ -138,6 +156,7 @@ struct Player<'r, 's, 'o, 'm> {
     settings: &'r Settings,
     /// The connection; `None` after its end.
     client: Option<Client<'m>>,
+    steps: Option<Receiver<()>>,
     sink: &'s RefCell<&'s mut Sink<'o, 'm>>,
     deviations: usize,
 }
@@ -149,6 +168,7 @@ impl<'m> Player<'_, '_, '_, 'm> {
             match expected {
                 Expected::Request(name, with) => {
                     self.idle(self.settings.pace).await?;
+                    self.step(name).await?;
                     if let Some(command) = self.reflector.model().operation(name) {
                         self.call(command, with, &mut play).await?;
                     }
@@ -164,6 +184,21 @@ impl<'m> Player<'_, '_, '_, 'm> {
             && let Err(error) = client.close().await
         {
             self.deviates("", error.text())?;
+        }
+        Ok(())
+    }
+
+    /// Receives reports until the next step.
+    async fn step(&mut self, name: &str) -> io::Result<()> {
+        if self.steps.is_some() {
+            self.show(Event::Waits(name))?;
+        }
+        while let Some(steps) = &mut self.steps {
+            match steps.try_recv() {
+                Ok(()) => return Ok(()),
+                Err(TryRecvError::Empty) => self.idle(STEP).await?,
+                Err(TryRecvError::Disconnected) => self.steps = None,
+            }
         }
         Ok(())
     }

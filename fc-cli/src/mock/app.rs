@@ -1,5 +1,7 @@
 //! `fcproto mock --as app`.
 
+use std::io::stdin;
+use std::thread;
 use std::time::Duration;
 
 use fc_reflect::{Direction, Reflector};
@@ -9,6 +11,7 @@ use fc_workshop::app::{App, Event, Settings};
 use fc_workshop::facts;
 use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::scenario::{Expected, Scenario};
+use tokio::sync::mpsc::{Receiver, channel};
 
 use crate::allow::{self, Allowed};
 use crate::call::show::Format;
@@ -50,7 +53,16 @@ pub struct AppOptions {
         help = both("app 的输出格式", "Output format of the app")
     )]
     format: Shown,
+    #[arg(
+        long,
+        requires = "to",
+        help = both("app 的每条指令等待一次回车", "Wait for Enter before each command of the app")
+    )]
+    step: bool,
 }
+
+/// Steps that wait.
+const STEPS: usize = 16;
 
 /// Plays the app against a robot.
 pub fn run(
@@ -84,6 +96,11 @@ pub fn run(
                 return Ok(Status::Unanswered);
             }
         };
+        let app = if options.app.step {
+            app.with_steps(steps())
+        } else {
+            app
+        };
         let mut interrupt = Interrupt::new()?;
         let sink = &mut |event: Event<'_, '_>| show(reflector, options.app.format, &event);
         let deviations = app.run(&scenario, sink, interrupt.next()).await?;
@@ -99,6 +116,19 @@ pub fn run(
         }
         Ok(Status::Faulty)
     })?
+}
+
+/// Reads lines on another thread, because reading blocks. Each one is a step.
+fn steps() -> Receiver<()> {
+    let (sender, receiver) = channel(STEPS);
+    thread::spawn(move || {
+        for line in stdin().lines() {
+            if line.is_err() || sender.blocking_send(()).is_err() {
+                return;
+            }
+        }
+    });
+    receiver
 }
 
 /// Returns the names of the commands that an app may send.
@@ -128,6 +158,12 @@ fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::
         lang: lang(),
     };
     let line = match event {
+        Event::Waits(name) => {
+            return print::message(&said!(
+                "下一条：`{name}`，按回车发送\n",
+                "next: `{name}`, press Enter to send it\n"
+            ));
+        }
         Event::Response(command, frame, took) => {
             let direction = Direction::Response;
             match reflector.message(Some(command), direction, &frame.data) {

@@ -2,7 +2,7 @@
 
 use crate::support::robot::Robot;
 use crate::support::{Project, command};
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Command, Stdio};
 
 #[test]
@@ -226,4 +226,32 @@ fn recorded_traffic_is_replayed_as_either_side() {
     let run = other.app(&project, &replay).expect(1);
     let deviation = "`get_level`: `level`: expected 77, found 40";
     assert!(run.stderr.contains(deviation), "{run:?}");
+}
+
+#[test]
+fn an_app_waits_for_each_step() {
+    let project = Project::new();
+    record(&project, 77, true);
+    let replay = ["--replay", "run.hex", "--pace", "1", "--lang", "en"];
+    let mock = Robot::mock(&project, &replay);
+    let mut app = mock
+        .app_command(&project, &[&replay[..], &["--expect", "--step"]].concat())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command can be run");
+    let mut steps = app.stdin.take().expect("its input");
+    let mut prompts = BufReader::new(app.stderr.take().expect("its messages"));
+    let mut responses = BufReader::new(app.stdout.take().expect("its output"));
+    let mut prompt = String::new();
+    prompts.read_line(&mut prompt).expect("a prompt");
+    assert_eq!(prompt, "next: `get_level`, press Enter to send it\n");
+    steps.write_all(b"\n").expect("the app reads steps");
+    let mut response = String::new();
+    responses.read_line(&mut response).expect("a response");
+    assert!(response.contains("get_level"), "{response}");
+    // After the end of its input, the app goes on.
+    drop(steps);
+    assert!(app.wait().expect("it ends").success());
 }

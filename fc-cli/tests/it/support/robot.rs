@@ -54,6 +54,12 @@ impl Robot {
 
     /// Runs `fcproto mock --as app` against it.
     pub fn app(&self, project: &Project, args: &[&str]) -> Run {
+        let output = self.app_command(project, args).output();
+        Run::new(&output.expect("the command can be run"))
+    }
+
+    /// Returns `fcproto mock --as app` against it.
+    pub fn app_command(&self, project: &Project, args: &[&str]) -> Command {
         let (_, data_port) = self.data.rsplit_once(':').expect("a port");
         let to = [
             "mock",
@@ -64,7 +70,9 @@ impl Robot {
             "--to-data-port",
             data_port,
         ];
-        project.fc(&[&to, args].concat())
+        let mut app = command(&[&to, args].concat());
+        app.current_dir(project.path(""));
+        app
     }
 
     /// Runs `fcproto call` against it.
