@@ -11,6 +11,9 @@ use ratatui::text::Line;
 use ratatui::widgets::{Paragraph, Row as TableRow, Table};
 use std::time::Duration;
 
+/// The columns of a terminal with room for message ids and lengths.
+const WIDE: u16 = 100;
+
 const GOOD: Style = Style::new().fg(Color::Green);
 const BAD: Style = Style::new().fg(Color::Red);
 const QUIET: Style = Style::new().add_modifier(Modifier::DIM);
@@ -89,26 +92,22 @@ impl View<'_> {
         let rows = self.rows();
         let selected = self.position(&rows);
         let lang = self.lang;
-        let heading = TableRow::new([
-            lang.pick("时间", "Time"),
-            "",
-            lang.pick("接口", "Operation"),
-            lang.pick("类型", "Kind"),
-            lang.pick("消息号", "Id"),
-            lang.pick("字节", "Bytes"),
-            "ms",
-            lang.pick("错误", "Error"),
-        ]);
-        let widths = [
-            Constraint::Length(15),
-            Constraint::Length(1),
-            Constraint::Fill(3),
-            Constraint::Length(15),
-            Constraint::Length(10),
-            Constraint::Length(8),
-            Constraint::Length(9),
-            Constraint::Fill(2),
+        let is_wide = area.width >= WIDE;
+        let columns = [
+            (lang.pick("时间", "Time"), Constraint::Length(15), true),
+            ("", Constraint::Length(1), true),
+            (lang.pick("接口", "Operation"), Constraint::Fill(3), true),
+            (lang.pick("类型", "Kind"), Constraint::Length(15), true),
+            (lang.pick("消息号", "Id"), Constraint::Length(10), is_wide),
+            (lang.pick("字节", "Bytes"), Constraint::Length(8), is_wide),
+            ("ms", Constraint::Length(8), true),
+            (lang.pick("错误", "Error"), Constraint::Fill(2), true),
         ];
+        let fits = columns.map(|(_, _, fits)| fits);
+        let columns = columns.into_iter().filter(|(_, _, fits)| *fits);
+        let (heading, widths): (Vec<_>, Vec<_>) =
+            columns.map(|(name, width, _)| (name, width)).unzip();
+        let heading = TableRow::new(heading);
         // The heading takes one line.
         let height = usize::from(area.height.saturating_sub(1)).max(1);
         let top = (selected + 1).saturating_sub(height);
@@ -120,7 +119,9 @@ impl View<'_> {
                 BAD
             };
             let chosen = if at == selected { CHOSEN } else { Style::new() };
-            cells(row).style(style.patch(chosen))
+            let cells = cells(row).into_iter().zip(fits);
+            let cells = cells.filter_map(|(cell, fits)| fits.then_some(cell));
+            TableRow::new(cells).style(style.patch(chosen))
         });
         let table = Table::new(shown, widths).header(heading.style(HEADING));
         frame.render_widget(table, area);
@@ -128,7 +129,7 @@ impl View<'_> {
 }
 
 /// Returns the cells of a row.
-fn cells(row: &Row) -> TableRow<'static> {
+fn cells(row: &Row) -> [String; 8] {
     let arrow = match row.sender {
         Some(Sender::App) => "→",
         Some(Sender::Robot) => "←",
@@ -139,7 +140,7 @@ fn cells(row: &Row) -> TableRow<'static> {
     } else {
         row.name.clone()
     };
-    TableRow::new([
+    [
         row.clock(),
         arrow.to_owned(),
         name,
@@ -148,7 +149,7 @@ fn cells(row: &Row) -> TableRow<'static> {
         row.length.to_string(),
         row.elapsed.map_or_else(String::new, written),
         row.problems(),
-    ])
+    ]
 }
 
 fn draw_opened(opened: &Opened, frame: &mut Frame<'_>, area: Rect) {
