@@ -1,6 +1,6 @@
 //! Completion of words that the spec knows, for shells.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 
 use clap::ArgMatches;
 use clap_complete::CompletionCandidate;
@@ -76,8 +76,8 @@ struct Line(Option<ArgMatches>);
 impl Line {
     /// Reads the words before the one to complete, which the script of the shell passes behind `--`.
     fn read() -> Self {
-        let words = std::env::args().skip_while(|word| word != "--").skip(1);
-        let words: Vec<String> = words.collect();
+        let words = std::env::args_os().skip_while(|word| word != "--");
+        let words: Vec<OsString> = words.skip(1).collect();
         let index = std::env::var("_CLAP_COMPLETE_INDEX").ok();
         let index = index.and_then(|index| index.parse().ok());
         let before = words

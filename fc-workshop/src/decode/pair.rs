@@ -6,8 +6,8 @@ use fc_spec::model::Direction;
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
 
-/// Requests that are kept while their response has not come.
-const KEPT: usize = 4096;
+/// Requests that are kept for their responses. With 4,096 of them, removals would make the table grow once more.
+const KEPT: usize = 3500;
 
 /// The request of a response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,20 +22,10 @@ pub struct Request {
 type Asked = (Option<Flow>, FrameId);
 
 /// Requests without a response.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Pairs {
     open: HashMap<Asked, (u64, Option<Duration>)>,
     order: VecDeque<Asked>,
-}
-
-impl Default for Pairs {
-    fn default() -> Self {
-        Self {
-            // A full table with many removals grows once more. Room for that is taken at once, so memory stays level.
-            open: HashMap::with_capacity(2 * KEPT),
-            order: VecDeque::new(),
-        }
-    }
 }
 
 impl Pairs {
