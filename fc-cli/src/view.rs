@@ -38,9 +38,17 @@ pub fn sink<'m>(view: &RefCell<View<'m>>) -> impl FnMut(Event<'_, 'm>) -> io::Re
 /// The terminal cannot be used.
 pub async fn show(view: &RefCell<View<'_>>, interrupt: &mut Interrupt) -> io::Result<()> {
     let mut terminal = ratatui::try_init()?;
-    let shown = pictures(&mut terminal, view, interrupt).await;
-    ratatui::restore();
-    shown
+    let _restored = Restored;
+    pictures(&mut terminal, view, interrupt).await
+}
+
+/// Restores the terminal when it is dropped, also if an error of the proxy ends the view.
+struct Restored;
+
+impl Drop for Restored {
+    fn drop(&mut self) {
+        ratatui::restore();
+    }
 }
 
 async fn pictures(

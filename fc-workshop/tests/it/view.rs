@@ -13,9 +13,14 @@ use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use std::io;
 use std::time::Duration;
 
-/// The lines of the terminal.
+/// The lines of a wide terminal.
 fn lines(view: &View<'_>) -> Vec<String> {
-    let mut terminal = Terminal::new(TestBackend::new(110, 12)).unwrap();
+    lines_of(view, 110)
+}
+
+/// The lines of a terminal with this number of columns.
+fn lines_of(view: &View<'_>, columns: u16) -> Vec<String> {
+    let mut terminal = Terminal::new(TestBackend::new(columns, 12)).unwrap();
     terminal.draw(|frame| view.draw(frame)).unwrap();
     let shown = terminal.backend().to_string();
     let lines = shown.lines().map(|line| line.trim_matches('"').trim_end());
@@ -82,6 +87,13 @@ fn frames_are_rows_with_counts_and_latencies() {
         assert!(response.contains(part), "{part}: {shown:#?}");
     }
     assert!(shown[6].contains("bad_digest"), "{shown:#?}");
+    // A narrow terminal has no room for message ids and lengths.
+    let narrow = lines_of(&view, 80);
+    assert!(
+        shown[2].contains("Bytes") && !narrow[2].contains("Bytes"),
+        "{narrow:#?}"
+    );
+    assert!(narrow[6].contains("set_light") && narrow[6].contains("bad_digest"));
 }
 
 #[test]
