@@ -25,7 +25,11 @@ const LEVEL: u8 = 6;
 /// Options of `fcproto encode`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(value_name = "NAME", add = ArgValueCompleter::new(complete::operations), help = both("接口的名称", "Name of an operation"))]
+    #[arg(
+        value_name = "NAME",
+        add = ArgValueCompleter::new(complete::operations),
+        help = both("接口的名称", "Name of an operation")
+    )]
     name: String,
     #[arg(
         value_name = "KEY=VALUE",

@@ -1,9 +1,10 @@
-//! Reads the TCP connections in captures of network packets.
+//! Reads the TCP connections in captures of network packets, and the frames in recordings.
 //!
 //! ```text
 //! pcap, pcapng ──file──►
 //!                        packets ──packet──► segments ──tcp──► bytes of each direction
 //! tcpdump text ──text──►
+//! MCAP ──mcap──► frames of each direction
 //! ```
 
 mod file;
