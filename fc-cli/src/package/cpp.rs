@@ -1,7 +1,10 @@
 //! The install tree of the C++ package, as `.tar.gz` and `.deb`.
 
+use std::path::Path;
+
 use fc_codegen::version::Ecosystem;
 
+use super::sbom::{Component, Package, Packages};
 use super::tool::Tool;
 use super::{Job, files};
 use crate::input;
@@ -27,7 +30,7 @@ const OPTIONS: [&str; 4] = [
 ];
 
 /// Builds the libraries, and packs what the package installs.
-pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
     let package = job.package("CMakeLists.txt")?;
     let [source, build] = [&package, &job.work].map(|it| it.display().to_string());
     let configure = ["-S", &source, "-B", &build];
@@ -41,9 +44,9 @@ pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
         .into());
     }
     let cache = input::file(&job.work.join("CMakeCache.txt"))?;
-    let mut lines = cache.lines();
-    let number = lines.find_map(|line| line.strip_prefix("CMAKE_PROJECT_VERSION:STATIC="));
-    let version = job.version(Ecosystem::Debian, number.unwrap_or_default())?;
+    let cached = |key: &str| cache.lines().find_map(|line| line.strip_prefix(key));
+    let number = cached("CMAKE_PROJECT_VERSION:STATIC=").unwrap_or_default();
+    let version = job.version(Ecosystem::Debian, number)?;
     let option = format!("-DCPACK_PACKAGE_VERSION={version}");
     CMAKE.run(&package, configure.chain([option.as_str()]))?;
     CMAKE.run(&package, ["--build", &build, "--parallel"])?;
@@ -56,5 +59,56 @@ pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
     CPACK.run(&job.work, ["-G", forms, "-B", &out])?;
     let leftovers = job.out.join("_CPack_Packages");
     std::fs::remove_dir_all(&leftovers).map_err(|error| files::unwritable(&leftovers, &error))?;
-    Ok(version)
+    let config = input::file(&job.work.join("CPackConfig.cmake"))?;
+    let mut dependencies = debian_dependencies(&config);
+    dependencies.extend(cached("ASIO_INCLUDE:PATH=").and_then(|it| asio(Path::new(it))));
+    Ok(Packages {
+        main: Package {
+            component: Component {
+                kind: "generic",
+                name: cached("CMAKE_PROJECT_NAME:STATIC=")
+                    .unwrap_or_default()
+                    .to_owned(),
+                version,
+                ..Component::default()
+            },
+            dependencies,
+        },
+        others: Vec::new(),
+    })
+}
+
+/// Returns the packages of Debian that users install: `name (>= 1.2), other`.
+fn debian_dependencies(config: &str) -> Vec<Component> {
+    let key = "set(CPACK_DEBIAN_PACKAGE_DEPENDS \"";
+    let list = config.lines().find_map(|line| line.strip_prefix(key));
+    let list = list.and_then(|it| it.strip_suffix("\")"));
+    let listed = list.unwrap_or_default().split(',').map(str::trim);
+    let listed = listed.filter(|it| !it.is_empty());
+    let component = |text: &str| {
+        let (name, requirement) = text.split_once(' ').unwrap_or((text, ""));
+        Component {
+            kind: "deb",
+            namespace: "debian".to_owned(),
+            name: name.to_owned(),
+            requirement: requirement.trim_matches(['(', ')']).to_owned(),
+            ..Component::default()
+        }
+    };
+    listed.map(component).collect()
+}
+
+/// Returns Asio, whose headers are compiled into the libraries.
+fn asio(headers: &Path) -> Option<Component> {
+    let text = input::file(&headers.join("asio/version.hpp")).ok()?;
+    let mut lines = text.lines();
+    // `#define ASIO_VERSION 102201 // 1.22.1`
+    let version = lines.find_map(|line| line.strip_prefix("#define ASIO_VERSION "));
+    let (_, version) = version?.split_once("// ")?;
+    Some(Component {
+        kind: "generic",
+        name: "asio".to_owned(),
+        version: version.trim().to_owned(),
+        ..Component::default()
+    })
 }

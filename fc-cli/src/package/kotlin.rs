@@ -7,6 +7,7 @@ use std::process::Command;
 use fc_codegen::version::Ecosystem;
 
 use super::maven::{Coordinates, seal};
+use super::sbom::{Package, Packages};
 use super::tool::Tool;
 use super::{Job, files};
 use crate::input;
@@ -39,7 +40,7 @@ struct Part<'p> {
 }
 
 /// Compiles the package with its script, and lays out a repository with runtime and generated code.
-pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
     let package = job.package(PROPERTIES)?;
     let file = package.join(PROPERTIES);
     let properties = Properties::read(&file)?;
@@ -85,7 +86,14 @@ pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
     for part in &parts {
         part.lay_out(job, &package)?;
     }
-    Ok(version)
+    let [runtime, generated] = parts.map(|it| Package {
+        component: it.coordinates.component(),
+        dependencies: it.dependencies.iter().map(Coordinates::component).collect(),
+    });
+    Ok(Packages {
+        main: generated,
+        others: vec![runtime],
+    })
 }
 
 impl Part<'_> {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use md5::Md5;
 use sha1::Sha1;
 
+use super::sbom::Component;
 use super::{files, sums};
 use crate::outcome::Failure;
 
@@ -53,6 +54,17 @@ impl Coordinates {
             escaped(&self.artifact),
             escaped(description),
         )
+    }
+
+    /// Returns the artifact as a component of a bill of materials.
+    pub fn component(&self) -> Component {
+        Component {
+            kind: "maven",
+            namespace: self.group.clone(),
+            name: self.artifact.clone(),
+            version: self.version.clone(),
+            ..Component::default()
+        }
     }
 
     fn elements(&self, indent: &str) -> String {

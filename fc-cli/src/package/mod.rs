@@ -6,6 +6,7 @@ mod kotlin;
 mod maven;
 mod python;
 mod rust;
+mod sbom;
 mod sums;
 mod tool;
 mod typescript;
@@ -29,6 +30,8 @@ use crate::project::Project;
 use crate::spec::Spec;
 use crate::versions::Shelf;
 use crate::{input, print, progress};
+
+use sbom::Packages;
 
 /// The maximum number of paths that a message lists.
 const NAMED: usize = 10;
@@ -79,7 +82,7 @@ impl Language {
         self.product().name()
     }
 
-    fn pack(self) -> fn(&Job<'_>) -> Result<String, Failure> {
+    fn pack(self) -> fn(&Job<'_>) -> Result<Packages, Failure> {
         match self {
             Self::Rust => rust::pack,
             Self::Typescript => typescript::pack,
@@ -123,6 +126,11 @@ pub fn help() -> Help {
                 "每种语言写到 DIR 下同名的目录。`DIR/SHA256SUMS` 列出所有文件；再次打包只替换其中列出的文件。一种语言失败时，其余语言照常打包。",
                 "Each language gets a directory with its name below DIR. `DIR/SHA256SUMS` lists all files. The next run replaces \
                  only files that are listed there. If one language fails, the others are still packed.",
+            )),
+            Part::Text(both(
+                "每个目录的 `sbom.cdx.json` 是物料清单（CycloneDX 1.6）：包、各自的版本和许可证，以及直接依赖。",
+                "`sbom.cdx.json` in each directory is the bill of materials (CycloneDX 1.6): the packages with versions and \
+                 licences, and their direct dependencies.",
             )),
             Part::Text(both(
                 "包的编号来自 `Cargo.toml`、`package.json`、`pyproject.toml`、`gradle.properties` 或 `CMakeLists.txt`。版本再加上规范的发布号：`0.2.0+2024.9`。\
@@ -266,7 +274,9 @@ fn pack(
         out: files::directory(&work.path().join("out"))?,
         work: files::directory(&work.path().join("work"))?,
     };
-    let version = language.pack()(&job)?;
+    let packages = language.pack()(&job)?;
+    sbom::write(&job.out, &packages)?;
+    let version = &packages.main.component.version;
     let name = language.name();
     let listed = sums::replace(out, name, &job.out)?;
     let mut text = format!(

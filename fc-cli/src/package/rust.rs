@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use fc_codegen::version::Ecosystem;
 use serde::Deserialize;
 
+use super::sbom::{Component, Package, Packages};
 use super::tool::{Tool, unpack};
 use super::{Job, files, sums};
 use crate::lang::said;
@@ -41,18 +42,41 @@ struct Workspace {
 #[derive(Clone, Deserialize)]
 struct Crate {
     name: String,
+    version: String,
+    license: Option<String>,
     manifest_path: PathBuf,
     dependencies: Vec<Dependency>,
 }
 
 #[derive(Clone, Deserialize)]
 struct Dependency {
+    name: String,
+    req: String,
+    optional: bool,
     kind: Option<String>,
     path: Option<PathBuf>,
 }
 
+impl Dependency {
+    /// Returns `true` if users of the crate need it.
+    fn is_needed(&self) -> bool {
+        self.kind.as_deref() != Some("dev")
+    }
+}
+
+fn not_a_crate(directory: &Path) -> Failure {
+    let directory = directory.display();
+    said!("`{directory}` 不是 crate", "`{directory}` is not a crate").into()
+}
+
+fn metadata(directory: &Path) -> Result<Workspace, Failure> {
+    let arguments = ["metadata", "--format-version=1", "--no-deps", "--offline"];
+    let printed = CARGO.run(directory, arguments)?;
+    Ok(serde_json::from_str(&printed)?)
+}
+
 /// Packs the generated crate and all crates that it depends on by path. The version is set in the packed files.
-pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
     let package = job.package("Cargo.toml")?;
     let (name, crates) = with_dependencies(&package)?;
     let unpacked = files::directory(&job.work.join("unpacked"))?;
@@ -71,11 +95,12 @@ pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
     }
     let generated = crates_there.iter().find(|path| is_of(path, &name));
     let manifest = generated.unwrap_or(&unpacked).join("Cargo.toml");
-    let version = files::set_toml_version(&manifest, "package", |number| {
+    files::set_toml_version(&manifest, "package", |number| {
         job.version(Ecosystem::Cargo, number)
     })?;
     let workspace = "[workspace]\nresolver = \"3\"\nmembers = [\"*\"]\n";
     files::write(&unpacked.join("Cargo.toml"), workspace)?;
+    let packages = contents(&unpacked, &name)?;
     let names: Vec<_> = crates.into_values().flatten().collect();
     let vendor = files::directory(&job.out.join(VENDOR))?;
     for archive in cargo_package(&unpacked, &names, &job.work.join("second"))? {
@@ -84,7 +109,54 @@ pub fn pack(job: &Job<'_>) -> Result<String, Failure> {
         seal(&vendor.join(file).with_extension(""), &archive)?;
         std::fs::rename(&archive, job.out.join(file))?;
     }
-    Ok(version)
+    Ok(packages)
+}
+
+/// Returns the contents of the packed crates.
+fn contents(root: &Path, main: &str) -> Result<Packages, Failure> {
+    let packed = metadata(root)?.packages;
+    let package = |it: &Crate| Package {
+        component: component(it),
+        dependencies: it
+            .dependencies
+            .iter()
+            .filter(|it| it.is_needed())
+            .map(|it| dependency(it, &packed))
+            .collect(),
+    };
+    let mut packages: Vec<_> = packed.iter().map(package).collect();
+    let Some(at) = packed.iter().position(|it| it.name == main) else {
+        return Err(not_a_crate(root));
+    };
+    Ok(Packages {
+        main: packages.remove(at),
+        others: packages,
+    })
+}
+
+fn component(packed: &Crate) -> Component {
+    Component {
+        kind: "cargo",
+        name: packed.name.clone(),
+        version: packed.version.clone(),
+        licence: packed.license.clone().unwrap_or_default(),
+        ..Component::default()
+    }
+}
+
+/// Returns a dependency. If it is one of the packed crates, its version is known.
+fn dependency(dependency: &Dependency, packed: &[Crate]) -> Component {
+    let found = packed.iter().find(|it| it.name == dependency.name);
+    found.map_or_else(
+        || Component {
+            kind: "cargo",
+            name: dependency.name.clone(),
+            requirement: dependency.req.clone(),
+            is_optional: dependency.optional,
+            ..Component::default()
+        },
+        component,
+    )
 }
 
 /// Returns `true` if the directory `name-version` is that of a crate.
@@ -102,13 +174,10 @@ fn with_dependencies(package: &Path) -> Result<(String, BTreeMap<PathBuf, Vec<St
     let mut left = vec![package.to_owned()];
     while let Some(directory) = left.pop() {
         let directory = directory.canonicalize()?;
-        let arguments = ["metadata", "--format-version=1", "--no-deps", "--offline"];
-        let printed = CARGO.run(&directory, arguments)?;
-        let workspace: Workspace = serde_json::from_str(&printed)?;
+        let workspace = metadata(&directory)?;
         let is_here = |it: &&Crate| it.manifest_path.parent() == Some(&directory);
         let Some(found) = workspace.packages.iter().find(is_here) else {
-            let directory = directory.display();
-            return Err(said!("`{directory}` 不是 crate", "`{directory}` is not a crate").into());
+            return Err(not_a_crate(&directory));
         };
         name.get_or_insert_with(|| found.name.clone());
         let names = crates.entry(workspace.workspace_root).or_default();
@@ -117,7 +186,7 @@ fn with_dependencies(package: &Path) -> Result<(String, BTreeMap<PathBuf, Vec<St
         }
         names.push(found.name.clone());
         let dependencies = found.dependencies.iter();
-        let needed = dependencies.filter(|it| it.kind.as_deref() != Some("dev"));
+        let needed = dependencies.filter(|it| it.is_needed());
         left.extend(needed.filter_map(|it| it.path.clone()));
     }
     Ok((name.unwrap_or_default(), crates))

@@ -1,5 +1,7 @@
 //! `fcproto package`. The packages of this repository are installed by `.ci/use`.
 
+use serde_json::{Value, json};
+
 use crate::support::{Project, Run, command};
 
 /// A project with a crate, whose files are up to date.
@@ -48,6 +50,7 @@ fn version_follows_the_release_of_the_spec() {
         let vendored = |file: &str| format!("rust/vendor/lamp-{version}/{file}");
         vec![
             format!("rust/lamp-{version}.crate"),
+            "rust/sbom.cdx.json".to_owned(),
             vendored(".cargo-checksum.json"),
             vendored("Cargo.toml"),
             vendored("Cargo.toml.orig"),
@@ -95,6 +98,64 @@ fn created_project_is_packed_with_its_runtime() {
             "{run:#?}"
         );
     }
+}
+
+#[test]
+fn bill_of_materials_lists_packages_and_their_direct_dependencies() {
+    let project = with_crate();
+    let manifest = project.read("lamp/Cargo.toml");
+    let manifest = manifest.replace(
+        "[workspace]",
+        "license = \"MIT\"\n\n[dependencies]\ntick = { path = \"../tick\", version = \"0.3\" }\n\n\
+         [dev-dependencies]\nproptest = \"1\"\n\n[workspace]",
+    );
+    project.write("lamp/Cargo.toml", &manifest);
+    project.write(
+        "tick/Cargo.toml",
+        "[package]\nname = \"tick\"\nversion = \"0.3.1\"\nedition = \"2024\"\n\n[dependencies]\n\
+         tokio = { version = \"1.5\", optional = true }\n\n[workspace]\n",
+    );
+    project.write("tick/src/lib.rs", "");
+    project
+        .fc(&["release", "7.01", "--today", "2026-09-01"])
+        .expect(0);
+    project.fc(&["generate"]).expect(0);
+    pack(&project).expect(0);
+    let bill: Value = serde_json::from_str(&project.read("dist/rust/sbom.cdx.json")).expect("JSON");
+    let lamp = "pkg:cargo/lamp@1.2.3%2B7.1";
+    let main = json!({
+        "type": "library",
+        "bom-ref": lamp,
+        "name": "lamp",
+        "version": "1.2.3+7.1",
+        "licenses": [{ "expression": "MIT" }],
+        "purl": lamp,
+    });
+    assert_eq!(bill["metadata"]["component"], main);
+    let requirement = json!({ "name": "fcproto:requirement", "value": "^1.5" });
+    let others = json!([
+        {
+            "type": "library",
+            "bom-ref": "pkg:cargo/tick@0.3.1",
+            "name": "tick",
+            "version": "0.3.1",
+            "purl": "pkg:cargo/tick@0.3.1",
+        },
+        {
+            "type": "library",
+            "bom-ref": "pkg:cargo/tokio",
+            "name": "tokio",
+            "scope": "optional",
+            "purl": "pkg:cargo/tokio",
+            "properties": [requirement],
+        },
+    ]);
+    assert_eq!(bill["components"], others);
+    let edges = json!([
+        { "ref": lamp, "dependsOn": ["pkg:cargo/tick@0.3.1"] },
+        { "ref": "pkg:cargo/tick@0.3.1", "dependsOn": ["pkg:cargo/tokio"] },
+    ]);
+    assert_eq!(bill["dependencies"], edges);
 }
 
 #[test]

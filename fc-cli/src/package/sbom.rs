@@ -1,0 +1,161 @@
+//! The software bill of materials of a language's packages: `CycloneDX` 1.6 in JSON.
+//!
+//! It has neither a time nor a serial number: the same packages have the same bill.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::files;
+use crate::outcome::Failure;
+
+/// The name of the file.
+const FILE: &str = "sbom.cdx.json";
+
+/// A package of an ecosystem.
+#[derive(Clone, Debug, Default)]
+pub struct Component {
+    /// The type of package URL, such as `cargo`.
+    pub kind: &'static str,
+    /// The group of Maven, the scope of npm or the vendor of Debian. Empty if there is none.
+    pub namespace: String,
+    pub name: String,
+    /// The exact version. Empty if several are accepted.
+    pub version: String,
+    /// The accepted versions, as the manifest writes them. Empty if there is one.
+    pub requirement: String,
+    /// An SPDX expression. Empty if it is not known.
+    pub licence: String,
+    /// A dependency that a build may leave out.
+    pub is_optional: bool,
+}
+
+impl Component {
+    /// Returns the package URL, which also identifies the component in the bill.
+    fn url(&self) -> String {
+        let mut url = format!("pkg:{}/", self.kind);
+        if !self.namespace.is_empty() {
+            url += &encoded(&self.namespace);
+            url.push('/');
+        }
+        url += &encoded(&self.name);
+        if !self.version.is_empty() {
+            url.push('@');
+            url += &encoded(&self.version);
+        }
+        url
+    }
+
+    fn listed(&self) -> Listed<'_> {
+        Listed {
+            kind: "library",
+            reference: self.url(),
+            group: &self.namespace,
+            name: &self.name,
+            version: &self.version,
+            scope: if self.is_optional { "optional" } else { "" },
+            licenses: (!self.licence.is_empty())
+                .then(|| json!({ "expression": self.licence }))
+                .into_iter()
+                .collect(),
+            purl: self.url(),
+            properties: (!self.requirement.is_empty())
+                .then(|| json!({ "name": "fcproto:requirement", "value": self.requirement }))
+                .into_iter()
+                .collect(),
+        }
+    }
+}
+
+/// A component as the bill lists it.
+#[derive(Serialize)]
+struct Listed<'c> {
+    #[serde(rename = "type")]
+    kind: &'static str,
+    #[serde(rename = "bom-ref")]
+    reference: String,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    group: &'c str,
+    name: &'c str,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    version: &'c str,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    scope: &'static str,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    licenses: Vec<Value>,
+    purl: String,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    properties: Vec<Value>,
+}
+
+/// Encodes a part of a package URL. Package URL, "Character encoding": letters, digits and `.-_~` stay.
+fn encoded(part: &str) -> String {
+    let mut text = String::new();
+    for byte in part.bytes() {
+        if byte.is_ascii_alphanumeric() || b".-_~:".contains(&byte) {
+            text.push(char::from(byte));
+        } else {
+            // Writing to a String cannot fail.
+            let _ = write!(text, "%{byte:02X}");
+        }
+    }
+    text
+}
+
+/// A package, and its direct dependencies.
+#[derive(Debug)]
+pub struct Package {
+    pub component: Component,
+    pub dependencies: Vec<Component>,
+}
+
+/// The packages of a language.
+#[derive(Debug)]
+pub struct Packages {
+    /// The package of the spec.
+    pub main: Package,
+    /// Further packages, such as the runtime.
+    pub others: Vec<Package>,
+}
+
+/// Writes the bill of a language's packages.
+pub fn write(directory: &Path, packages: &Packages) -> Result<(), Failure> {
+    let Packages { main, others } = packages;
+    let all = || std::iter::once(main).chain(others);
+    let needed = all().flat_map(|it| &it.dependencies);
+    let components = others.iter().map(|it| &it.component).chain(needed);
+    // A dependency on one of the packages has the URL of that package.
+    let mut listed = BTreeMap::new();
+    for component in components {
+        let entry = listed.entry(component.url());
+        entry.or_insert_with(|| component.listed());
+    }
+    let edges = all().map(|it| {
+        let on: BTreeSet<_> = it.dependencies.iter().map(Component::url).collect();
+        json!({ "ref": it.component.url(), "dependsOn": on })
+    });
+    let bill = json!({
+        "$schema": "http://cyclonedx.org/schema/bom-1.6.schema.json",
+        "bomFormat": "CycloneDX",
+        "specVersion": "1.6",
+        "version": 1,
+        "metadata": {
+            "lifecycles": [{ "phase": "build" }],
+            "tools": {
+                "components": [{
+                    "type": "application",
+                    "name": "fcproto",
+                    "version": env!("CARGO_PKG_VERSION"),
+                }],
+            },
+            "component": main.component.listed(),
+        },
+        "components": listed.values().collect::<Vec<_>>(),
+        "dependencies": edges.collect::<Vec<_>>(),
+    });
+    let text = serde_json::to_string_pretty(&bill)?;
+    files::write(&directory.join(FILE), text + "\n")
+}
