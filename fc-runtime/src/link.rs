@@ -4,6 +4,8 @@ use crate::frame::Decoder;
 use crate::protocol::Protocol;
 use socket2::{SockRef, TcpKeepalive};
 use std::io;
+#[cfg(feature = "server")]
+use std::mem::MaybeUninit;
 use std::pin::{Pin, pin};
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
@@ -150,8 +152,8 @@ impl<S: Transport, P: Protocol> Link<S, P> {
 
     /// Reads once into a bare decoder. No memory is reserved before bytes have arrived.
     pub(crate) fn poll_begin(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
-        let mut first = [0; FIRST];
-        let mut first = ReadBuf::new(&mut first);
+        let mut first = [const { MaybeUninit::uninit() }; FIRST];
+        let mut first = ReadBuf::uninit(&mut first);
         ready!(Pin::new(&mut self.stream).poll_read(cx, &mut first))?;
         self.decoder.begin(first.filled());
         Poll::Ready(Ok(first.filled().len()))
