@@ -3,6 +3,9 @@ package fc.runtime
 import java.util.Calendar
 import java.util.concurrent.TimeUnit
 import java.util.function.BiConsumer
+import java.util.function.Consumer
+import javax.net.ssl.SSLContext
+import javax.net.ssl.SSLEngine
 
 /** The schedule of reconnection attempts after a loss. */
 public class Backoff private constructor(
@@ -58,6 +61,8 @@ public class ClientConfig private constructor(from: ClientConfig?) {
         private set
     internal var resync: Boolean = from?.resync ?: false
         private set
+    internal var tls: Tls? = from?.tls
+        private set
     internal var log: Log? = from?.log
         private set
 
@@ -110,6 +115,15 @@ public class ClientConfig private constructor(from: ClientConfig?) {
 
     /** Searches for the next frame after invalid bytes. By default, the connection is closed. */
     public fun resync(resync: Boolean): ClientConfig = with { this.resync = resync }
+
+    /**
+     * Connects over TLS at both ports. The certificate of the robot must name the [host]. [configure] changes the engine
+     * of each connection, for example its cipher suites. The handshake is a part of the [connectTimeout]. With `null`
+     * (the default), connections are plain TCP.
+     */
+    @JvmOverloads
+    public fun tls(context: SSLContext?, configure: Consumer<SSLEngine>? = null): ClientConfig =
+        with { tls = context?.let { Tls(it, configure) } }
 
     /** Takes the log lines of the connection. Unset: errors are printed to `System.err`. */
     public fun log(log: Log?): ClientConfig = with { this.log = log }
@@ -165,6 +179,8 @@ public class ServerConfig private constructor(from: ServerConfig?) {
     internal var keepalive: Boolean = from?.keepalive ?: true
         private set
     internal var allowed: Allowed = from?.allowed ?: Allowed.EVERYBODY
+        private set
+    internal var tls: Tls? = from?.tls
         private set
     internal var log: Log? = from?.log
         private set
@@ -265,6 +281,15 @@ public class ServerConfig private constructor(from: ServerConfig?) {
      */
     public fun allow(network: String, vararg effects: Effect): ServerConfig =
         with { allowed = allowed.plus(Network.of(network), effects.toSet()) }
+
+    /**
+     * Serves both ports over TLS. [configure] changes the engine of each connection: with `needClientAuth = true`, apps
+     * need a certificate too. The handshake may take the [headerTimeout]; the connection is silent in the meantime. With
+     * `null` (the default), connections are plain TCP.
+     */
+    @JvmOverloads
+    public fun tls(context: SSLContext?, configure: Consumer<SSLEngine>? = null): ServerConfig =
+        with { tls = context?.let { Tls(it, configure) } }
 
     /** Takes the log lines of the connections. Unset: errors are printed to `System.err`. */
     public fun log(log: Log?): ServerConfig = with { this.log = log }

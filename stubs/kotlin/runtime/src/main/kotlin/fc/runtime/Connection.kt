@@ -261,7 +261,11 @@ public class Connection internal constructor(internal val core: ClientCore, priv
         private fun tcp(protocol: Protocol, config: ClientConfig, isFirstOnly: Boolean): Connection {
             val loop = NioLoop("fc-client", config.log)
             val host = config.host ?: protocol.host
-            fun dial(port: Int) = Dial { done -> loop.connect(host, port, config.keepalive, done) }
+            fun dial(port: Int): Dial {
+                val dial = Dial { done -> loop.connect(host, port, config.keepalive, done) }
+                val tls = config.tls ?: return dial
+                return TlsDial(loop, dial) { tls.client(host, port) }
+            }
             val core = ClientCore(protocol, config, loop, dial(config.commandPort ?: protocol.commandPort))
             core.onEnd = { loop.schedule(after(loop.now, FAREWELL)) { loop.end() } }
             core.begin(isFirstOnly)

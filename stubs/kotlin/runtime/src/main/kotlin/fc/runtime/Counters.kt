@@ -149,6 +149,9 @@ public class ServerCounters internal constructor(private val counts: LongArray) 
 
     /** Bytes sent. */
     public val bytesOut: Long get() = counts[31]
+
+    /** Connections closed because their TLS handshake failed or took too long. */
+    public val handshakesFailed: Long get() = counts[32]
 }
 
 internal enum class ServerCount {
@@ -157,7 +160,7 @@ internal enum class ServerCount {
     CALLS_INVALID, CALLS_EXPIRED, CALLS_REFUSED, CALLS_FORBIDDEN, CALLS_NOT_IMPLEMENTED, HANDLERS_PANICKED,
     HANDLERS_ABANDONED, ABANDONED_REACHED, IN_FLIGHT_REACHED, BAD_FRAMES, REPORTS_SENT, REPORTS_REPEATED,
     REPORTS_ACKNOWLEDGED, REPORTS_REFUSED, REPORTS_TIMED_OUT, REPORTS_DROPPED, STREAM_FRAMES_IN, STREAM_FRAMES_OUT,
-    STREAM_FRAMES_DROPPED, BYTES_IN, BYTES_OUT,
+    STREAM_FRAMES_DROPPED, BYTES_IN, BYTES_OUT, HANDSHAKES_FAILED,
 }
 
 /** Counters by name. Any thread may use them. */

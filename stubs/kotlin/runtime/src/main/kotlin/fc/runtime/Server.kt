@@ -4,6 +4,7 @@ import java.io.IOException
 import java.net.InetSocketAddress
 import java.net.SocketAddress
 import java.nio.channels.ServerSocketChannel
+import java.nio.channels.SocketChannel
 import java.util.concurrent.CompletableFuture
 import java.util.concurrent.TimeUnit
 import kotlin.coroutines.resume
@@ -204,14 +205,18 @@ public class Server internal constructor(
         ): Server {
             val loop = NioLoop("fc-robot", config.log)
             val core = ServerCore(protocol, config, loop, service, CoroutineScope(SupervisorJob() + dispatcher))
+            fun link(channel: SocketChannel): Link {
+                val link = loop.link(channel, config.keepalive)
+                return config.tls?.let { core.secured(link, it.server(), channel.socket().remoteSocketAddress) } ?: link
+            }
             var commands: ServerSocketChannel? = null
             try {
                 commands = loop.listen(InetSocketAddress(config.address, config.commandPort ?: protocol.commandPort)) { channel ->
-                    val link = loop.link(channel, config.keepalive)
+                    val link = link(channel)
                     if (!core.serve(link, channel.socket().remoteSocketAddress)) link.close()
                 }
                 val data = loop.listen(InetSocketAddress(config.address, config.dataPort ?: protocol.dataPort)) { channel ->
-                    val link = loop.link(channel, config.keepalive)
+                    val link = link(channel)
                     if (!core.serveData(link, channel.socket().remoteSocketAddress)) link.close()
                 }
                 return Server(core, commands, data)

@@ -4,6 +4,7 @@ import java.net.InetAddress
 import java.net.InetSocketAddress
 import java.net.SocketAddress
 import java.util.Locale
+import javax.net.ssl.SSLEngine
 import kotlinx.coroutines.CoroutineExceptionHandler
 import kotlinx.coroutines.CoroutineScope
 import kotlinx.coroutines.Job
@@ -73,6 +74,16 @@ internal class ServerCore(
         lines.say(LogLevel.INFO, "connected") { "connected at the data port: ${peer.id} from $address" }
         peer.start()
         return true
+    }
+
+    /** Puts TLS on a link. The handshake is a part of the served connection, and has as much time as a header. */
+    fun secured(link: Link, engine: SSLEngine, address: SocketAddress?): Link {
+        val secured = TlsLink(loop, link, engine) { error ->
+            counting.add(ServerCount.HANDSHAKES_FAILED)
+            lines.say(LogLevel.WARN, "handshake") { "the handshake failed: ${error.message}; from $address" }
+        }
+        secured.shakeUntil(after(loop.now, config.headerTimeout))
+        return secured
     }
 
     private inline fun left(id: Long, leave: () -> Unit) {

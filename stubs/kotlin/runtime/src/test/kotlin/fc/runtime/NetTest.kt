@@ -18,10 +18,10 @@ import kotlinx.coroutines.launch
 import kotlinx.coroutines.runBlocking
 import kotlinx.coroutines.withTimeout
 
-private const val LOCAL = "127.0.0.1"
+internal const val LOCAL = "127.0.0.1"
 
 /** A robot that echoes. Its motions wait for [gate]. */
-private class TestRobot(config: ServerConfig = ServerConfig(), val gate: CompletableDeferred<Unit>? = null) {
+internal class TestRobot(config: ServerConfig = ServerConfig(), val gate: CompletableDeferred<Unit>? = null) {
     val begun = CompletableDeferred<Context>()
     val ended = CompletableDeferred<Unit>()
     val cancelled = CompletableDeferred<Unit>()
@@ -44,7 +44,7 @@ private class TestRobot(config: ServerConfig = ServerConfig(), val gate: Complet
                 ended.complete(Unit)
                 Done.of()
             },
-        config.address(LOCAL).commandPort(0).dataPort(0).log { _, _ -> },
+        config.address(LOCAL).commandPort(0).dataPort(0).log(config.log ?: Log { _, _ -> }),
     )
 
     fun config(): ClientConfig =
@@ -54,7 +54,7 @@ private class TestRobot(config: ServerConfig = ServerConfig(), val gate: Complet
     suspend fun app(): Connection = Connection.connect(Toy, config())
 }
 
-private fun Tests.net(name: String, body: suspend () -> Unit) = case(name) { runBlocking { withTimeout(20_000) { body() } } }
+internal fun Tests.net(name: String, body: suspend () -> Unit) = case(name) { runBlocking { withTimeout(20_000) { body() } } }
 
 private suspend fun callError(body: suspend () -> Unit): String? = try {
     body()
