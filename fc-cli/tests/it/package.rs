@@ -101,7 +101,7 @@ fn created_project_is_packed_with_its_runtime() {
 }
 
 #[test]
-fn bill_of_materials_lists_packages_and_their_direct_dependencies() {
+fn sbom_lists_all_direct_dependencies() {
     let project = with_crate();
     let manifest = project.read("lamp/Cargo.toml");
     let manifest = manifest.replace(

@@ -15,6 +15,7 @@
 #include "fc_runtime/log.hpp"
 #include "fc_runtime/operation.hpp"
 #include "fc_runtime/reports.hpp"
+#include "fc_runtime/secure_channel.hpp"
 #include "fc_runtime/typed.hpp"
 
 namespace fc_runtime {
@@ -61,6 +62,9 @@ struct ClientConfig {
   bool verify_digest = true;
   /// Searches for the next frame after invalid bytes, instead of closing the connection.
   bool resync = false;
+  /// Creates the secure channel of each connection at both ports, such as `openssl_client(context)`.
+  /// Its handshake is a part of the `connect_timeout`. Unset: plain TCP.
+  ClientChannel channel;
   /// Receives the lines of the log. Without it, errors go to the standard error.
   Log log;
 };

@@ -41,6 +41,8 @@ struct ServerCounters {
   Count connections_displaced;
   /// Connections closed by a timeout: of a header, of a stalled frame or reader, or of silence.
   Count connections_timed_out;
+  /// Connections closed because the handshake of their channel failed or took too long.
+  Count handshakes_failed;
   /// Times a connection was not read for a while because of useless frames.
   Count connections_paced;
   /// Requests with a response of success.

@@ -17,6 +17,7 @@
 #include "fc_runtime/operation.hpp"
 #include "fc_runtime/push.hpp"
 #include "fc_runtime/robot_core.hpp"
+#include "fc_runtime/secure_channel.hpp"
 #include "fc_runtime/typed.hpp"
 
 namespace fc_runtime {
@@ -85,6 +86,10 @@ struct ServerConfig {
   std::optional<std::chrono::milliseconds> idle_timeout;
   /// Idle time before TCP keepalive probes the app. Unset: no probes.
   std::optional<std::chrono::milliseconds> keepalive = std::chrono::seconds(30);
+  /// Creates the secure channel of each connection at both ports, such as `openssl_server(context)`.
+  /// The handshake may take the `header_timeout`; the connection is silent in the meantime. Unset:
+  /// plain TCP.
+  ServerChannel channel;
   /// Receives the lines of the log. Without it, errors go to the standard error.
   Log log;
   /// Called with each exception of a handler, or an `UnsendableResponse` if its response cannot be

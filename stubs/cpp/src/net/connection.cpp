@@ -135,7 +135,8 @@ void ConnectionImpl::dialled(Result<std::shared_ptr<Link>, Loss> link) {
     } else if (is_reset && !core_.is_heard()) {
       down({LossKind::Unheard, {}, {}});
     } else {
-      down({LossKind::Broken, {}, error.message()});
+      const std::string& fault = link_->fault();
+      down({LossKind::Broken, {}, fault.empty() ? error.message() : fault});
     }
   };
   link_->on_written = [this] { core_.set_unwritten(link_->unwritten(), clock_now()); };

@@ -101,7 +101,10 @@ void DataImpl::up(std::shared_ptr<Link> link) {
   link_->on_end = [this](const std::error_code& error) {
     const auto inside = decoder_->finish();
     Loss why{is_heard_ ? LossKind::Closed : LossKind::Unheard, {}, {}};
-    if (error != asio::error::eof) why = {LossKind::Broken, {}, error.message()};
+    const std::string& fault = link_->fault();
+    if (error != asio::error::eof) {
+      why = {LossKind::Broken, {}, fault.empty() ? error.message() : fault};
+    }
     if (error == asio::error::eof && inside) why = {LossKind::Frame, inside->kind, {}};
     down(why, false);
     dial();

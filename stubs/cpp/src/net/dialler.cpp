@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <asio/connect.hpp>
+#include <exception>
 #include <random>
 
 #include "fc_runtime/session.hpp"
@@ -20,11 +21,15 @@ struct Dialler::Attempt {
     if (!result) {
       std::error_code ignored;
       socket.close(ignored);
+      if (securing) securing->close();
     }
+    securing.reset();
     if (told) told(std::move(result));
   }
 
   asio::ip::tcp::socket socket;
+  /// The link during the handshake of its channel.
+  std::shared_ptr<Link> securing;
   asio::ip::tcp::resolver resolver;
   asio::steady_timer timer;
   Dialled done;
@@ -37,7 +42,8 @@ Dialler::Dialler(asio::io_context& io, std::string host, std::uint16_t port,
       port_(port),
       limit_(bounded(config.connect_timeout)),
       keepalive_(config.keepalive),
-      backoff_(config.reconnect) {}
+      backoff_(config.reconnect),
+      channel_(config.channel) {}
 
 std::optional<std::chrono::milliseconds> Dialler::next_wait() {
   if (std::exchange(is_first_, false)) return std::chrono::milliseconds(0);
@@ -66,9 +72,7 @@ bool Dialler::dial(Dialled done) {
 void Dialler::resolve(const std::shared_ptr<Attempt>& attempt) {
   attempt->timer.expires_after(limit_);
   attempt->timer.async_wait([this, attempt](std::error_code error) {
-    if (error || !attempt->done) return;
-    ++failed_;
-    attempt->finish(Loss{LossKind::ConnectTimeout, {}, host_});
+    if (!error && attempt->done) fail(*attempt, {LossKind::ConnectTimeout, {}, host_});
   });
   attempt->resolver.async_resolve(
       host_, std::to_string(port_), asio::ip::tcp::resolver::numeric_service,
@@ -79,8 +83,7 @@ void Dialler::resolve(const std::shared_ptr<Attempt>& attempt) {
           connect(attempt, endpoints);
           return;
         }
-        ++failed_;
-        attempt->finish(Loss{LossKind::Unreachable, {}, error.message()});
+        fail(*attempt, {LossKind::Unreachable, {}, error.message()});
       });
 }
 
@@ -90,15 +93,47 @@ void Dialler::connect(const std::shared_ptr<Attempt>& attempt,
                       [this, attempt](std::error_code error, const asio::ip::tcp::endpoint&) {
                         if (!attempt->done) return;
                         if (error) {
-                          ++failed_;
-                          attempt->finish(Loss{LossKind::Unreachable, {}, error.message()});
+                          fail(*attempt, {LossKind::Unreachable, {}, error.message()});
+                          return;
+                        }
+                        auto link = std::make_shared<Link>(std::move(attempt->socket));
+                        link->prepare(keepalive_);
+                        if (channel_) {
+                          secure(attempt, link);
                           return;
                         }
                         failed_ = 0;
-                        auto link = std::make_shared<Link>(std::move(attempt->socket));
-                        link->prepare(keepalive_);
                         attempt->finish(std::move(link));
                       });
+}
+
+void Dialler::secure(const std::shared_ptr<Attempt>& attempt, const std::shared_ptr<Link>& link) {
+  attempt->securing = link;
+  link->on_handshake = [this, attempt, link = link.get()](const std::optional<std::string>& fault) {
+    if (!attempt->done) return;
+    if (fault) {
+      fail(*attempt, {LossKind::Unreachable, {}, "the handshake failed: " + *fault});
+      return;
+    }
+    failed_ = 0;
+    link->on_handshake = nullptr;
+    attempt->finish(std::shared_ptr<Link>(attempt->securing));
+  };
+  std::string fault = "the channel of the settings is empty";
+  try {
+    if (auto channel = channel_(host_)) {
+      link->secure(std::move(channel));
+      return;
+    }
+  } catch (const std::exception& error) {
+    fault = error.what();
+  }
+  fail(*attempt, {LossKind::Unreachable, {}, fault});
+}
+
+void Dialler::fail(Attempt& attempt, Loss why) {
+  ++failed_;
+  attempt.finish(std::move(why));
 }
 
 void Dialler::ended(bool heard) {

@@ -38,6 +38,9 @@ class Dialler {
   void resolve(const std::shared_ptr<Attempt>& attempt);
   void connect(const std::shared_ptr<Attempt>& attempt,
                const asio::ip::tcp::resolver::results_type& endpoints);
+  /// Makes the handshake of a channel, and finishes the attempt.
+  void secure(const std::shared_ptr<Attempt>& attempt, const std::shared_ptr<Link>& link);
+  void fail(Attempt& attempt, Loss why);
 
   asio::io_context* io_;
   std::string host_;
@@ -45,6 +48,7 @@ class Dialler {
   std::chrono::milliseconds limit_;
   std::optional<std::chrono::milliseconds> keepalive_;
   std::optional<Backoff> backoff_;
+  ClientChannel channel_;
   bool is_first_ = true;
   /// Consecutive failed attempts.
   std::uint32_t failed_ = 0;

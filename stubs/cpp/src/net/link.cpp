@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <asio/buffer.hpp>
 #include <asio/error.hpp>
+#include <asio/post.hpp>
+#include <utility>
 
 namespace fc_runtime::detail {
 
@@ -51,8 +53,25 @@ void Link::prepare(std::optional<std::chrono::milliseconds> keepalive) {
 #endif
 }
 
+void Link::secure(std::unique_ptr<SecureChannel> channel,
+                  std::optional<std::chrono::milliseconds> limit) {
+  channel_ = std::move(channel);
+  if (limit) {
+    closing_.expires_after(*limit);
+    closing_.async_wait([self = shared_from_this()](std::error_code error) {
+      if (!error && !self->is_ready()) self->broke("the handshake took too long");
+    });
+  }
+  received({});
+  read_some();
+}
+
 void Link::read() {
   wanted_ = true;
+  read_some();
+}
+
+void Link::read_some() {
   if (reading_ || ended_ || closed_ || finishing_) return;
   reading_ = true;
   socket_.async_read_some(asio::buffer(buffer_),
@@ -64,14 +83,50 @@ void Link::read() {
                               return;
                             }
                             if (error) {
-                              self->ended_ = true;
-                              // The listener may release this link.
-                              tell<const std::error_code&>(self->on_end, error);
+                              self->end(error);
                               return;
                             }
-                            tell<std::string_view>(self->on_bytes, {self->buffer_.data(), count});
-                            if (self->wanted_) self->read();
+                            self->received({self->buffer_.data(), count});
+                            if (self->wanted_ || !self->is_ready()) self->read_some();
                           });
+}
+
+void Link::received(std::string_view bytes) {
+  if (!channel_) {
+    tell<std::string_view>(on_bytes, bytes);
+    return;
+  }
+  const bool was_ready = is_ready();
+  SecureChannel::Output output;
+  const auto fault = channel_->receive(bytes, output);
+  sealed_ += output.sealed;
+  write();
+  if (fault) {
+    broke(*fault);
+    return;
+  }
+  if (!was_ready && is_ready()) {
+    closing_.cancel();
+    tell<const std::optional<std::string>&>(on_handshake, std::nullopt);
+    write();
+  }
+  if (!output.opened.empty()) tell<std::string_view>(on_bytes, output.opened);
+}
+
+void Link::broke(const std::string& fault) {
+  if (closed_ || ended_) return;
+  fault_ = fault;
+  end(std::make_error_code(std::errc::protocol_error));
+}
+
+void Link::end(std::error_code error) {
+  ended_ = true;
+  if (!is_ready()) {
+    const std::string why = fault_.empty() ? error.message() : fault_;
+    tell<const std::optional<std::string>&>(on_handshake, why);
+  }
+  // The listener may release this link.
+  tell<const std::error_code&>(on_end, error);
 }
 
 void Link::send(std::string bytes) {
@@ -88,12 +143,27 @@ void Link::write() {
   if (closed_ || busy_) return;
   writing_.clear();
   written_ = 0;
-  if (waiting_.empty()) {
+  seal();
+  std::string& next = channel_ ? sealed_ : waiting_;
+  if (next.empty()) {
     if (finishing_) say_goodbye();
     return;
   }
-  writing_.swap(waiting_);
+  writing_.swap(next);
   write_some();
+}
+
+void Link::seal() {
+  if (!channel_) return;
+  SecureChannel::Output output;
+  std::optional<std::string> fault;
+  if (is_ready() && !waiting_.empty()) fault = channel_->send(std::exchange(waiting_, {}), output);
+  if (finishing_ && !std::exchange(said_goodbye_, true)) channel_->finish(output);
+  sealed_ += output.sealed;
+  if (!fault) return;
+  // The caller may be a listener, which expects no other call.
+  asio::post(socket_.get_executor(),
+             [self = shared_from_this(), why = *std::move(fault)] { self->broke(why); });
 }
 
 void Link::write_some() {
@@ -107,11 +177,10 @@ void Link::write_some() {
 void Link::wrote(std::error_code error, std::size_t count) {
   busy_ = false;
   if (error) {
-    ended_ = true;
     if (finishing_) {
       close();
     } else {
-      tell<const std::error_code&>(on_end, error);
+      end(error);
     }
     return;
   }
@@ -161,6 +230,7 @@ void Link::read_to_end() {
 void Link::forget() {
   on_bytes = nullptr;
   on_end = nullptr;
+  on_handshake = nullptr;
   on_written = nullptr;
 }
 

@@ -142,6 +142,7 @@ class ServerImpl {
   void accept(tcp::acceptor& acceptor, bool is_data);
   void accept_later(tcp::acceptor& acceptor, bool is_data);
   void accepted(tcp::socket socket, bool is_data);
+  [[nodiscard]] bool secure(Link& link, const std::string& address);
   void connected(std::shared_ptr<Link> link, const std::string& address,
                  const std::vector<Effect>& effects);
   template <class Peers, class IsSilent, class GiveWay>
@@ -282,6 +283,7 @@ void ServerImpl::accepted(tcp::socket socket, bool is_data) {
   }
   auto link = std::make_shared<Link>(std::move(socket));
   link->prepare(config_.keepalive);
+  if (config_.channel && !secure(*link, address)) return;
   if (!is_data) {
     connected(std::move(link), address, *effects);
     return;
@@ -302,6 +304,25 @@ void ServerImpl::accepted(tcp::socket socket, bool is_data) {
   } else {
     link->finish();
   }
+}
+
+/// Starts the handshake of a connection. Returns `false` if there is no channel for it.
+bool ServerImpl::secure(Link& link, const std::string& address) {
+  std::unique_ptr<SecureChannel> channel;
+  try {
+    channel = config_.channel();
+  } catch (...) {
+    logger_.write_thrown("`ServerConfig::channel`");
+  }
+  if (!channel) return false;
+  link.on_handshake = [this, address](const std::optional<std::string>& fault) {
+    if (!fault) return;
+    ++core_.counting().handshakes_failed;
+    logger_.write(LogLevel::Warning, "handshake",
+                  "the handshake with " + address + " failed: " + *fault);
+  };
+  link.secure(std::move(channel), bounded(config_.header_timeout));
+  return true;
 }
 
 void ServerImpl::connected(std::shared_ptr<Link> link, const std::string& address,

@@ -117,7 +117,7 @@ public class ClientConfig private constructor(from: ClientConfig?) {
     public fun resync(resync: Boolean): ClientConfig = with { this.resync = resync }
 
     /**
-     * Connects over TLS at both ports. The certificate of the robot must name the [host]. [configure] changes the engine
+     * Connects over TLS at both ports. The certificate of the robot must name the [host]. [configure] changes the `SSLEngine`
      * of each connection, for example its cipher suites. The handshake is a part of the [connectTimeout]. With `null`
      * (the default), connections are plain TCP.
      */
@@ -283,7 +283,7 @@ public class ServerConfig private constructor(from: ServerConfig?) {
         with { allowed = allowed.plus(Network.of(network), effects.toSet()) }
 
     /**
-     * Serves both ports over TLS. [configure] changes the engine of each connection: with `needClientAuth = true`, apps
+     * Serves both ports over TLS. [configure] changes the `SSLEngine` of each connection: with `needClientAuth = true`, apps
      * need a certificate too. The handshake may take the [headerTimeout]; the connection is silent in the meantime. With
      * `null` (the default), connections are plain TCP.
      */

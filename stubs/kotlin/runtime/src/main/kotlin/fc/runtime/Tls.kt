@@ -289,7 +289,7 @@ internal class TlsLink(
         }
     }
 
-    /** Sends the alert that the engine has prepared, if the peer takes it at once. */
+    /** Sends the prepared alert, if the peer takes it at once. */
     private fun sayWhy() {
         try {
             if (engine.handshakeStatus == HandshakeStatus.NEED_WRAP) wrap(NOTHING)

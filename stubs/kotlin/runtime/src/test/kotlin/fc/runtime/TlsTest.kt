@@ -145,7 +145,7 @@ internal fun tlsTests(tests: Tests) {
     }
     for ((name, context, host) in listOf(
         Triple("a robot with a strange certificate", context(appKey, appKey), LOCAL),
-        Triple("a robot whose certificate has another name", ofApp, "localhost"),
+        Triple("a robot with another name in its certificate", ofApp, "localhost"),
     )) {
         tests.net("$name is refused, and others are served") {
             val failed = CompletableDeferred<String>()
