@@ -168,7 +168,7 @@ class Readme(unittest.TestCase):
         include = ("-I", PACKAGE / "generated/include", "-I", PACKAGE / "include")
         for name in ("README.md", "README.zh-CN.md"):
             samples = re.findall(r"```cpp\n(.*?)```", (PACKAGE / name).read_text(encoding="utf-8"), re.DOTALL)
-            self.assertEqual(len(samples), 2)
+            self.assertEqual(len(samples), 3)
             with tempfile.TemporaryDirectory() as folder:
                 source = Path(folder) / "samples.cpp"
                 # The samples are separate programs and files, but one compilation is enough.

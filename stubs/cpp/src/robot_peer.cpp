@@ -162,8 +162,8 @@ void RobotPeer::begin(FrameId frame, std::string_view text, Instant now) {
   const std::shared_ptr<const std::string> held(new std::string(text), forget);
   handled_bytes_ += text.size();
   auto settled = std::make_shared<std::atomic<bool>>(false);
-  handlers_[handler] = {frame, after(now, shared_->settings.handler_timeout), abandoned, settled,
-                        held};
+  handlers_[handler] = {frame,     now,     after(now, shared_->settings.handler_timeout),
+                        abandoned, settled, held};
   shared_->handlers[handler] = id_;
   shared_->begin({handler, id_, frame, held, std::move(settled), std::move(abandoned)});
 }
@@ -178,33 +178,50 @@ void RobotPeer::finish(std::uint64_t handler, const Handled& handled, Instant no
   const auto found = handlers_.find(handler);
   if (found == handlers_.end()) return;
   const FrameId frame = found->second.frame;
+  const Instant begun = found->second.begun;
   handled_bytes_ -= found->second.text->size();
   handlers_.erase(found);
   shared_->handlers.erase(handler);
   ServerCounters& counters = shared_->counters;
   if (handled) {
-    ++(append(frame, *handled) ? counters.calls_succeeded : counters.calls_protocol);
+    const bool is_sent = append(frame, *handled);
+    ++(is_sent ? counters.calls_succeeded : counters.calls_protocol);
+    tell_end(frame, is_sent ? "success" : "protocol", begun);
   } else {
     if (handled.error().is_not_implemented) ++counters.calls_not_implemented;
-    answer(frame, handled.error());
+    answer(frame, handled.error(), begun);
   }
   pump(now);
 }
 
-void RobotPeer::answer(FrameId id, const Refusal& refusal) {
+void RobotPeer::tell_end(FrameId id, std::string_view result, Instant begun) const {
+  if (!shared_->on_call) return;
+  const OperationInfo* known = shared_->protocol->find(OperationKind::Command, id.code);
+  shared_->on_call({known == nullptr ? "unknown" : known->name, result, now_ - begun});
+}
+
+void RobotPeer::answer(FrameId id, const Refusal& refusal, std::optional<Instant> begun) {
   const Results& results = shared_->protocol->results;
   ServerCounters& counters = shared_->counters;
-  bool is_useless = true;
+  std::string_view result;
   if (refusal.code == results.protocol.code) {
     ++counters.calls_protocol;
+    result = "protocol";
   } else if (refusal.code == results.invalid.code) {
     ++counters.calls_invalid;
+    result = "invalid";
   } else if (refusal.code == results.expired.code) {
     ++counters.calls_expired;
+    result = "expired";
+  } else if (refusal.code == results.timeout.code) {
+    ++counters.calls_timed_out;
+    result = "timeout";
   } else {
-    is_useless = false;
-    ++(refusal.code == results.timeout.code ? counters.calls_timed_out : counters.calls_refused);
+    ++counters.calls_refused;
+    result = "refused";
   }
+  tell_end(id, result, begun.value_or(now_));
+  const bool is_useless = result != "timeout" && result != "refused";
   if (is_useless) rest(pace_.unusable(now_));
   if (!shared_->protocol->has_result()) return;
   const Envelope envelope{unix_ms(), refusal.code, refusal.text};
@@ -333,7 +350,7 @@ void RobotPeer::advance(Instant now) {
     }
     abandon(at->second);
     shared_->handlers.erase(at->first);
-    answer(at->second.frame, shared_->protocol->results.timeout);
+    answer(at->second.frame, shared_->protocol->results.timeout, at->second.begun);
     handled_bytes_ -= at->second.text->size();
     at = handlers_.erase(at);
   }

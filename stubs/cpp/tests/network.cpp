@@ -189,6 +189,83 @@ void calls(Tally& tally) {
   tally.check(!closed && closed.error().name() == "closed", "after the end");
 }
 
+/// Collects what the hook for metrics gets.
+class Ended {
+ public:
+  fc_runtime::CallHook hook() {
+    return [this](const fc_runtime::EndedCall& call) {
+      const std::lock_guard held(mutex_);
+      words_.push_back(std::string(call.operation) + " " + std::string(call.result));
+      if (call.time.count() < 0) words_.push_back("a negative time");
+      changed_.notify_all();
+    };
+  }
+  /// Returns the calls, once there are `count`.
+  std::vector<std::string> words(std::size_t count) {
+    std::unique_lock held(mutex_);
+    changed_.wait_for(held, kPatience, [&] { return words_.size() >= count; });
+    return words_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> words_;
+};
+
+void metrics(Tally& tally) {
+  Ended at_app;
+  Ended at_robot;
+  Door door;
+  ServerConfig robot = free_ports();
+  robot.on_call = at_robot.hook();
+  const auto server = *Server::bind(protocol(), service(&door), robot);
+  ClientConfig config = to(server.command_port());
+  config.on_call = at_app.hook();
+  const auto app = *Connection::connect(protocol(), config);
+  const std::string echo(protocol().find(fc_runtime::OperationKind::Command, tests::kEcho)->name);
+  const std::string go(protocol().find(fc_runtime::OperationKind::Command, tests::kGo)->name);
+  static_cast<void>(app.call(Echo{"a", {}}));
+  static_cast<void>(app.call(Go{0, {}}));
+  static_cast<void>(app.call(Echo{"\xFF", {}}));
+  static_cast<void>(app.call_body(900, "{}"));
+  std::promise<void> answered;
+  app.call_async(Echo{"b", {}}, [&](const auto&) { answered.set_value(); });
+  answered.get_future().get();
+  app.call_body_async(tests::kEcho, "{}", [](const fc_runtime::Answer&) {});
+  static_cast<void>(at_app.words(6));
+  const auto dropped = app.call_async(Go{1, {}}, [](const auto&) {});
+  tally.check(door.has(1), "a call is at work");
+  dropped.cancel();
+  static_cast<void>(at_app.words(7));
+  door.open();
+  app.close();
+  static_cast<void>(app.closed(kPatience));
+  static_cast<void>(app.call(Echo{"c", {}}));
+  const std::vector<std::string> told = {
+      echo + " success", go + " refused",   echo + " invalid_request", "unknown success",
+      echo + " success", echo + " success", go + " dropped",           echo + " closed"};
+  tally.check(at_app.words(8) == told, "the app knows the end of each call");
+  const std::vector<std::string> seen = {echo + " success", go + " refused", "unknown protocol",
+                                         echo + " success", echo + " invalid"};
+  auto found = at_robot.words(5);
+  found.resize(5);
+  tally.check(found == seen, "the robot knows it, too");
+
+  Lines lines;
+  ServerConfig careless = free_ports();
+  careless.on_call = [](const fc_runtime::EndedCall&) { throw std::runtime_error("secret"); };
+  careless.log = lines.log();
+  const auto failing = *Server::bind(protocol(), service(), careless);
+  ClientConfig client = to(failing.command_port());
+  client.on_call = careless.on_call;
+  client.log = lines.log();
+  const auto other = *Connection::connect(protocol(), client);
+  tally.check(other.call(Echo{"a", {}}).has_value(), "a hook that throws harms nothing");
+  tally.check(lines.has("`on_call` threw `std::runtime_error`") && !lines.has_now("secret"),
+              "and is logged");
+}
+
 void compressed(Tally& tally) {
   ServerConfig robot = free_ports();
   robot.gzip = fc_runtime::Gzip{};
@@ -837,9 +914,9 @@ void handler_timeout(Tally& tally) {
 int main() {
   Tally tally;
   for (const auto test :
-       {calls,  compressed, reports,   streams,  subscriptions,  stream_contents, allowed,
-        losses, stalls,     hostile,   silent,   handler_errors, callbacks_throw, log_flood,
-        memory, gone,       abandoned, settings, shutdown,       handler_timeout}) {
+       {calls,     metrics, compressed, reports,   streams,  subscriptions,  stream_contents,
+        allowed,   losses,  stalls,     hostile,   silent,   handler_errors, callbacks_throw,
+        log_flood, memory,  gone,       abandoned, settings, shutdown,       handler_timeout}) {
     test(tally);
   }
   return tally.outcome("things over TCP", 300);

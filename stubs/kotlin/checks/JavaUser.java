@@ -11,7 +11,8 @@ final class JavaUser {
     private JavaUser() {}
 
     static ClientConfig secured(SSLContext context) {
-        return new ClientConfig().tls(context, engine -> engine.setEnabledProtocols(new String[] {"TLSv1.3"}));
+        return new ClientConfig().tls(context, engine -> engine.setEnabledProtocols(new String[] {"TLSv1.3"}))
+                .onCall(call -> System.out.println(call.getOperation() + " " + call.getResult() + " " + call.getNanoseconds()));
     }
 
     static double use(Client client) {

@@ -59,6 +59,7 @@ OTHERS: dict[Any, dict[str, list[Any]]] = {
         "verify_digest": NO_FLAGS,
         "resync": NO_FLAGS,
         "ssl": [True, "tls"],
+        "on_call": [5, "log"],
     },
     rt.ServerConfig: {
         "address": [*NO_HOSTS, None],
@@ -76,6 +77,7 @@ OTHERS: dict[Any, dict[str, list[Any]]] = {
             {"10.0.0.0/8": None},
         ],
         "on_handler_error": [5, "log"],
+        "on_call": [5, "log"],
         "gzip": [True, 9],
         "verify_digest": NO_FLAGS,
         "resync": NO_FLAGS,

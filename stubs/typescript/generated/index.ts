@@ -66,6 +66,7 @@ export type {
   Context,
   DataErrorKind,
   Effect,
+  EndedCall,
   Extra,
   ExtraKey,
   FollowableCall,

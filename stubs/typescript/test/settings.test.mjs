@@ -102,6 +102,7 @@ test('robot_refuses_other_settings_that_make_no_sense', async () => {
     ['resync', { resync: 1 }],
     ['log', { log: {} }],
     ['onHandlerError', { onHandlerError: true }],
+    ['onCall', { onCall: [] }],
     ['allow', { allow: '10.0.0.0/8' }],
     ['allow\\[0\\]', { allow: ['10.0.0.0/8'] }],
     ['allow\\[0\\].network', { allow: [{ network: 10, effects: 'all' }] }],

@@ -16,9 +16,9 @@ const RUNTIME: &str = "\
 /// The types of the runtime that apps and robots need.
 const RUNTIME_TYPES: &str = "\
     AckOutcome Acknowledgement Answer AppStream Audience Backoff CallErrorKind CallOptions ClientConfig \
-    ClientCounters Clock ConnectionId ConnectionState Context DataErrorKind Effect Extra ExtraKey \
-    FollowableCall Followed Gzip JsonText Limits Log LogFields LogLevel Loss MessageOf Platform \
-    PushErrorKind RawRequest RawResponse ServerConfig ServerCounters ServerPlatform StreamFrame \
+    ClientCounters Clock ConnectionId ConnectionState Context DataErrorKind Effect EndedCall \
+    Extra ExtraKey FollowableCall Followed Gzip JsonText Limits Log LogFields LogLevel Loss MessageOf \
+    Platform PushErrorKind RawRequest RawResponse ServerConfig ServerCounters ServerPlatform StreamFrame \
     StreamItem Transport UnknownReport";
 
 /// Returns `true` if the root exports a runtime item with this name.

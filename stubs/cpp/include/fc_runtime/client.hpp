@@ -12,6 +12,7 @@
 
 #include "fc_runtime/client_core.hpp"
 #include "fc_runtime/data.hpp"
+#include "fc_runtime/ended_call.hpp"
 #include "fc_runtime/log.hpp"
 #include "fc_runtime/operation.hpp"
 #include "fc_runtime/reports.hpp"
@@ -67,6 +68,9 @@ struct ClientConfig {
   ClientChannel channel;
   /// Receives the lines of the log. Without it, errors go to the standard error.
   Log log;
+  /// Receives the end of each call, for metrics. Runs on the thread that waits for the call, or on
+  /// that of the connection, and must not block. An exception of this function is logged.
+  CallHook on_call;
 };
 
 namespace detail {
@@ -104,34 +108,37 @@ class Connection {
   template <class Request>
   Result<typename Command<Request>::Response, CallError> call(
       const Request& request, const CallOptions& options = {}) const {
-    using Response = typename Command<Request>::Response;
-    auto body = write_request(protocol(), request);
-    if (!body) return std::move(body).error();
-    auto answer = call_body(Command<Request>::code, *std::move(body),
-                            usual(options, Command<Request>::effect));
-    if (!answer) return std::move(answer).error();
-    return read_response<Response>(protocol(), *answer, limits().json());
+    const auto end = end_of(Command<Request>::code);
+    auto response = answered(request, options);
+    if (end) end->tell(response ? "success" : response.error().name());
+    return response;
   }
 
   /// Calls a command without waiting. `done` gets the response, on the thread of the connection.
   template <class Request, class Done>
   PendingCall call_async(const Request& request, Done done, const CallOptions& options = {}) const {
-    using Response = typename Command<Request>::Response;
+    using Answered = Result<typename Command<Request>::Response, CallError>;
+    auto finish = [end = end_of(Command<Request>::code),
+                   done = std::move(done)](Answered response) mutable {
+      if (end) end->tell(response ? "success" : response.error().name());
+      done(std::move(response));
+    };
     auto body = write_request(protocol(), request);
     if (!body) {
-      done(Result<Response, CallError>(std::move(body).error()));
+      finish(std::move(body).error());
       return PendingCall([] {});
     }
     const Protocol* protocol_of = &protocol();
     const Allowance allowance = limits().json();
-    auto read = [done = std::move(done), protocol_of, allowance](Answer answer) mutable {
+    auto read = [finish = std::move(finish), protocol_of, allowance](Answer answer) mutable {
+      using Response = typename Command<Request>::Response;
       if (!answer) {
-        done(Result<Response, CallError>(std::move(answer).error()));
+        finish(std::move(answer).error());
       } else {
-        done(read_response<Response>(*protocol_of, *answer, allowance));
+        finish(read_response<Response>(*protocol_of, *answer, allowance));
       }
     };
-    return call_body_async(Command<Request>::code, *std::move(body), std::move(read),
+    return send_body_async(Command<Request>::code, *std::move(body), std::move(read),
                            usual(options, Command<Request>::effect));
   }
 
@@ -169,6 +176,23 @@ class Connection {
   friend class DataConnection;
   class Handle;
   explicit Connection(std::shared_ptr<Handle> handle);
+  template <class Request>
+  Result<typename Command<Request>::Response, CallError> answered(
+      const Request& request, const CallOptions& options) const {
+    using Response = typename Command<Request>::Response;
+    auto body = write_request(protocol(), request);
+    if (!body) return std::move(body).error();
+    auto answer = send_body(Command<Request>::code, *std::move(body),
+                            usual(options, Command<Request>::effect));
+    if (!answer) return std::move(answer).error();
+    return read_response<Response>(protocol(), *answer, limits().json());
+  }
+  [[nodiscard]] Answer send_body(std::uint16_t code, std::string body,
+                                 const CallOptions& options) const;
+  PendingCall send_body_async(std::uint16_t code, std::string body, Completion done,
+                              const CallOptions& options) const;
+  /// Begins a call for `ClientConfig::on_call`; null without that function.
+  [[nodiscard]] std::shared_ptr<detail::CallEnd> end_of(std::uint16_t code) const;
   static CallOptions usual(CallOptions options, Effect effect) {
     if (!options.repeat) options.repeat = effect == Effect::Read;
     return options;

@@ -18,6 +18,7 @@
 #include "fc_runtime/call.hpp"
 #include "fc_runtime/client_core.hpp"
 #include "fc_runtime/count.hpp"
+#include "fc_runtime/ended_call.hpp"
 #include "fc_runtime/frame.hpp"
 #include "fc_runtime/pace.hpp"
 #include "fc_runtime/push.hpp"
@@ -158,6 +159,7 @@ struct RobotShared {
   ServerCounters counters;
   std::function<void(Request)> begin;
   std::function<void(ConnectionId, FrameId, const FrameError&)> unsendable;
+  CallHook on_call;
   /// `true` while memory is short: the robot reads nothing.
   bool is_pressed = false;
   /// Bytes of all requests in handlers, including those of closed connections.
@@ -205,6 +207,7 @@ class RobotPeer {
  private:
   struct AtWork {
     FrameId frame;
+    Instant begun;
     Instant due;
     std::shared_ptr<std::atomic<bool>> abandoned;
     std::shared_ptr<std::atomic<bool>> settled;
@@ -216,7 +219,9 @@ class RobotPeer {
   void begin(FrameId frame, std::string_view text, Instant now);
   void abandon(const AtWork& handler);
   void acknowledged(Queued report, std::string_view text);
-  void answer(FrameId id, const Refusal& refusal);
+  /// Responds with a refusal. A request without a handler began now.
+  void answer(FrameId id, const Refusal& refusal, std::optional<Instant> begun = std::nullopt);
+  void tell_end(FrameId id, std::string_view result, Instant begun) const;
   [[nodiscard]] bool append(FrameId id, std::string_view body);
   void rest(bool must_rest);
   void begin_to_write();
@@ -280,6 +285,8 @@ class RobotCore {
   void closed(ConnectionId id);
   /// The counters, for the owner of the sockets, which counts the connections that it closes.
   [[nodiscard]] ServerCounters& counting() { return shared_->counters; }
+  /// Sets the callback for the end of each call. It must not throw.
+  void set_on_call(CallHook told) { shared_->on_call = std::move(told); }
   /// Sets the callback for responses that do not fit into a frame.
   void set_unsendable(std::function<void(ConnectionId, FrameId, const FrameError&)> told) {
     shared_->unsendable = std::move(told);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fc_runtime/data.hpp"
+#include "fc_runtime/ended_call.hpp"
 #include "fc_runtime/log.hpp"
 #include "fc_runtime/operation.hpp"
 #include "fc_runtime/push.hpp"
@@ -96,6 +97,9 @@ struct ServerConfig {
   /// sent. The exception may quote the request; the log has only its type. Runs in a thread of the
   /// server and must not block. An exception of this function is logged.
   std::function<void(const std::exception_ptr& error, const Context& context)> on_handler_error;
+  /// Receives the end of each call, for metrics. Runs on the thread of all connections and must not
+  /// block. An exception of this function is logged.
+  CallHook on_call;
 };
 
 /// The reason why a server could not start.

@@ -254,7 +254,45 @@ Connection Connection::connect_lazy(const Protocol& protocol, const ClientConfig
   return Connection(std::make_shared<Handle>(std::move(impl)));
 }
 
+std::shared_ptr<detail::CallEnd> Connection::end_of(std::uint16_t code) const {
+  const auto& impl = handle_->impl;
+  const CallHook& hook = impl->config().on_call;
+  if (!hook) return nullptr;
+  const OperationInfo* known = protocol().find(OperationKind::Command, code);
+  // The protocol outlives the connection.
+  const std::string_view operation = known == nullptr ? "unknown" : known->name;
+  const auto begun = std::chrono::steady_clock::now();
+  return std::make_shared<detail::CallEnd>([weak = std::weak_ptr<detail::ConnectionImpl>(impl),
+                                            hook, operation, begun](std::string_view result) {
+    const EndedCall call{operation, result, std::chrono::steady_clock::now() - begun};
+    try {
+      hook(call);
+    } catch (...) {
+      if (const auto there = weak.lock()) there->logger().write_thrown("`on_call`");
+    }
+  });
+}
+
 Answer Connection::call_body(std::uint16_t code, std::string body,
+                             const CallOptions& options) const {
+  const auto end = end_of(code);
+  Answer answer = send_body(code, std::move(body), options);
+  if (end) end->tell(answer ? "success" : answer.error().name());
+  return answer;
+}
+
+PendingCall Connection::call_body_async(std::uint16_t code, std::string body, Completion done,
+                                        const CallOptions& options) const {
+  if (auto end = end_of(code)) {
+    done = [end = std::move(end), done = std::move(done)](Answer answer) {
+      end->tell(answer ? "success" : answer.error().name());
+      if (done) done(std::move(answer));
+    };
+  }
+  return send_body_async(code, std::move(body), std::move(done), options);
+}
+
+Answer Connection::send_body(std::uint16_t code, std::string body,
                              const CallOptions& options) const {
   if (handle_->impl->is_own_thread()) {
     // On its own thread, the wait would never end.
@@ -271,7 +309,7 @@ Answer Connection::call_body(std::uint16_t code, std::string body,
   return answer->take();
 }
 
-PendingCall Connection::call_body_async(std::uint16_t code, std::string body, Completion done,
+PendingCall Connection::send_body_async(std::uint16_t code, std::string body, Completion done,
                                         const CallOptions& options) const {
   // Used only on the thread of the connection.
   const auto token = std::make_shared<std::uint64_t>(0);

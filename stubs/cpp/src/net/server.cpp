@@ -95,6 +95,10 @@ class ServerImpl {
       context.address = address_of(id);
       note_failure(context, std::make_exception_ptr(UnsendableResponse(error)));
     });
+    if (config_.on_call) {
+      core_.set_on_call(
+          [this](const EndedCall& call) { logger_.call("`on_call`", config_.on_call, call); });
+    }
     data_.on_held = [this] {
       if (held() > config_.memory) after_work();
     };

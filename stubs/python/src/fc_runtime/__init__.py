@@ -42,6 +42,7 @@ from .data_peer import AppStream, AppStreams
 from .data_queues import StreamFrame, StreamItem
 from .deprecation import deprecated
 from .document import Extra, Json
+from .ended import EndedCall
 from .errors import BodyError, BodyErrorKind, FrameError, FrameErrorKind
 from .following import (
     Ended,
@@ -164,6 +165,7 @@ __all__ = [
     "Effect",
     "Encoder",
     "Ended",
+    "EndedCall",
     "ExampleRobot",
     "Extra",
     "Failed",

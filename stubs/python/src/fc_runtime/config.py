@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from .context import Context
+    from .ended import EndedCall
     from .settings import Check
 
 
@@ -83,6 +84,8 @@ class ClientConfig:
     """Searches for the next frame after invalid bytes."""
     ssl: SSLContext | None = None
     """TLS at both ports; the protocol has none."""
+    on_call: Callable[[EndedCall], None] | None = None
+    """Receives the end of each call, for metrics. An exception of this function is logged and ignored."""
 
     def __post_init__(self) -> None:
         """Checks every setting. Raises `TypeError` and `ValueError`."""
@@ -144,6 +147,8 @@ class ServerConfig:
     That is an exception other than a `Refusal`, also after the timeout, or the error of an invalid response. It may
     quote the request. The log has only its class and place. An exception of this function is logged and ignored.
     """
+    on_call: Callable[[EndedCall], None] | None = None
+    """Receives the end of each call, for metrics. An exception of this function is logged and ignored."""
 
     def __post_init__(self) -> None:
         """Checks every setting. Raises `TypeError` and `ValueError`."""
@@ -196,6 +201,7 @@ _CLIENT: Final[Mapping[str, Check]] = {
     "verify_digest": flag,
     "resync": flag,
     "ssl": _SSL,
+    "on_call": or_none(function),
 }
 
 _SERVER: Final[Mapping[str, Check]] = {
@@ -221,6 +227,7 @@ _SERVER: Final[Mapping[str, Check]] = {
     "idle_timeout": or_none(duration),
     "keepalive": or_none(keepalive),
     "on_handler_error": or_none(function),
+    "on_call": or_none(function),
 }
 
 

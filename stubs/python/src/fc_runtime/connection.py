@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from .backoff import Tries
 from .calls import (
@@ -27,6 +27,7 @@ from .calls import (
 from .codec import codec_of
 from .config import ClientConfig, first_id_now
 from .document import Json, parse_body
+from .ended import EndedCall
 from .enveloped import read_request, read_response, write_raw_request, write_request, write_response
 from .errors import BodyError, FrameError
 from .frame import Decoder, Encoder, Frame, FrameId, Prepared
@@ -38,9 +39,10 @@ from .session import BusyFault, Incoming, Session
 from .settings import duration, flag, or_none
 from .states import ClientCounters, Closed, Connected, Connecting, ConnectionState
 from .thin import Thin
+from .thrown import describe
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Callable
+    from collections.abc import AsyncIterator, Callable, Coroutine
 
     from .link import Dial
     from .message import Message
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
 
 R = TypeVar("R", bound="Message")
 Q = TypeVar("Q", bound="Message")
+T = TypeVar("T")
 
 _log: Final = logging.getLogger(__name__)
 # Most unsent bytes up to which reports are acknowledged.
@@ -336,10 +339,15 @@ class Connection:
         """
         if command.code is None:
             raise ValueError(f"{command.name} has no code yet")
-        asked = self.asked(command, request)
         repeats = command.effect is Effect.READ if repeat is None else repeat
+        return await self._told(command.code, self._call(command, command.code, request, timeout, repeats=repeats))
+
+    async def _call(
+        self, command: Command[Q, R], code: int, request: Message | None, timeout: float | None, *, repeats: bool
+    ) -> R:
+        asked = self.asked(command, request)
         answer = await self._fly(
-            command.code, lambda: write_request(self.protocol, command.request, asked), timeout, repeat=repeats
+            code, lambda: write_request(self.protocol, command.request, asked), timeout, repeat=repeats
         )
         try:
             response = read_response(self.protocol, command.response, answer, self.limits)
@@ -366,6 +374,9 @@ class Connection:
 
         A result other than success is not an error: the response has it. Raises `CallError`.
         """
+        return await self._told(code, self._call_raw(code, body, timeout, repeat=repeat))
+
+    async def _call_raw(self, code: int, body: Json | None, timeout: float | None, *, repeat: bool) -> RawResponse:
         answer = await self._fly(code, lambda: write_raw_request(self.protocol, body), timeout, repeat=repeat)
         refusal: Refusal | None = None
         try:
@@ -376,6 +387,31 @@ class Connection:
             raise InvalidResponseError(error) from None
         entries = parse_body(answer, self.limits.json_depth, self.limits.json_values)
         return RawResponse(refusal, Json.of_tree(entries))
+
+    async def _told(self, code: int, call: Coroutine[Any, Any, T]) -> T:
+        """Waits for a call, and tells `on_call` its end."""
+        hook = self.config.on_call
+        if hook is None:
+            return await call
+        since, result = self._loop.time(), None
+        try:
+            answer = await call
+            result = "success"
+        except CallError as error:
+            result = error.name
+            raise
+        except asyncio.CancelledError:
+            result = "dropped"
+            raise
+        finally:
+            if result is not None:
+                known = self.protocol.commands_by_code.get(code)
+                ended = EndedCall("unknown" if known is None else known.name, result, self._loop.time() - since)
+                try:
+                    hook(ended)
+                except Exception as failed:  # noqa: BLE001 - whatever it is, it is the app's own
+                    self._say("on_call", logging.ERROR, "`on_call` failed: %s", describe(failed, hook))
+        return answer
 
     async def _fly(self, code: int, write: Callable[[], bytes], timeout: float | None, *, repeat: bool) -> bytes:
         """Sends a request, and waits for the bytes of the response. Raises `CallError`."""

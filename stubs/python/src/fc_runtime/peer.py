@@ -45,6 +45,7 @@ class _Work:
     command: Command[Any, Any] | None
     handler: Callable[[Context, Any], Awaitable[Any]]
     size: int
+    since: float
     due: float
     task: asyncio.Task[None] | None = None
 
@@ -181,8 +182,9 @@ class Peer:
             self._answer(frame.id, because(results.protocol, "too many handlers are still at work"))
             return
         context = Context(self.connection, self.address, code, frame.id.id, effect, at)
-        due = server.loop.time() + server.handler_timeout
-        work = _Work(frame.id, context, command, handler, len(frame.data), due)
+        now = server.loop.time()
+        due = now + server.handler_timeout
+        work = _Work(frame.id, context, command, handler, len(frame.data), now, due)
         self._works[work] = None
         self._bodies += work.size
         work.task = server.loop.create_task(self._handle(work, request))
@@ -216,7 +218,7 @@ class Peer:
                 self._late_timer = self.server.loop.call_at(work.due, self._look_for_late)
                 break
             if self._abandon(work):
-                self._answer(work.frame, self.server.protocol.results.timeout)
+                self._answer(work.frame, self.server.protocol.results.timeout, since=work.since)
                 self._go_on()
 
     def _abandon(self, work: _Work) -> bool:
@@ -233,12 +235,12 @@ class Peer:
             response = await work.handler(work.context, request)
         except Refusal as refusal:
             if self._forget(work):
-                self._answer(work.frame, ResultText(refusal.code, refusal.text), is_refusal=True)
+                self._answer(work.frame, ResultText(refusal.code, refusal.text), is_refusal=True, since=work.since)
                 self._go_on()
             return
         except asyncio.CancelledError:
             if self._forget(work):
-                self._answer(work.frame, because(results.protocol, "the handler was cancelled"))
+                self._answer(work.frame, because(results.protocol, "the handler was cancelled"), since=work.since)
                 self._go_on()
             raise
         except (KeyboardInterrupt, SystemExit):
@@ -247,7 +249,7 @@ class Peer:
             server.counters.handlers_panicked += 1
             server.tell_failure("the handler of %s failed", error, work.context, work.handler)
             if self._forget(work):
-                self._answer(work.frame, because(results.protocol, "the handler panicked"))
+                self._answer(work.frame, because(results.protocol, "the handler panicked"), since=work.since)
                 self._go_on()
             return
         if not self._forget(work):
@@ -255,9 +257,10 @@ class Peer:
         try:
             self._send(work.frame, self._write(work.command, response))
             server.counters.calls_succeeded += 1
+            server.call_ended(work.frame.code, "success", work.since)
         except (BodyError, FrameError) as error:
             server.tell_failure("the response to %s breaks the spec", error, work.context, work.handler)
-            self._answer(work.frame, results.protocol)
+            self._answer(work.frame, results.protocol, since=work.since)
         self._go_on()
 
     def _write(self, command: Command[Any, Any] | None, response: Any) -> bytes:
@@ -277,25 +280,34 @@ class Peer:
         self._answer(frame, result)
         self._rest(unusable=1)
 
-    def _answer(self, frame: FrameId, result: ResultText, *, is_refusal: bool = False) -> None:
-        """Responds with a result other than success."""
-        protocol, counters = self.server.protocol, self.server.counters
+    def _answer(
+        self, frame: FrameId, result: ResultText, *, is_refusal: bool = False, since: float | None = None
+    ) -> None:
+        """Responds with a result other than success. The request came at `since`, or now."""
+        server = self.server
+        protocol, counters = server.protocol, server.counters
         if is_refusal and result.code != protocol.results.protocol.code:
             counters.calls_refused += 1
+            ended = "refused"
         elif result.code == protocol.results.timeout.code:
             counters.calls_timed_out += 1
+            ended = "timeout"
         elif result.code == protocol.results.invalid.code:
             counters.calls_invalid += 1
+            ended = "invalid"
         elif result.code == protocol.results.expired.code:
             counters.calls_expired += 1
+            ended = "expired"
         else:
             counters.calls_protocol += 1
+            ended = "protocol"
         if protocol.has_result:
             try:
                 self._send(frame, write_response(protocol, result))
             except FrameError as error:
                 # Even that does not fit into a frame: the app gets no response, and its call ends by timeout.
-                self.server.log("no answer", logging.ERROR, "no answer fits into a frame: %s", error)
+                server.log("no answer", logging.ERROR, "no answer fits into a frame: %s", error)
+        server.call_ended(frame.code, ended, server.loop.time() if since is None else since)
 
     def _send(self, frame: FrameId, data: bytes) -> None:
         if not self._is_over:

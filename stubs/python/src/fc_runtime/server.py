@@ -15,6 +15,7 @@ from .codec import write_content
 from .config import ServerConfig
 from .counters import ServerCounters
 from .data_peer import AppStreams, DataPeer
+from .ended import EndedCall
 from .enveloped import write_request
 from .errors import BodyError, FrameError
 from .frame import Encoder, frame_bytes, stream_frame
@@ -306,6 +307,18 @@ class Server:
             hook(error, context)
         except Exception as failed:  # noqa: BLE001 - whatever it is, it is the robot's own
             self._log_failure("hook", "`on_handler_error` failed", failed, hook)
+
+    def call_ended(self, code: int, result: str, since: float) -> None:
+        """Tells `on_call` that a call has ended which came at `since`."""
+        hook = self.config.on_call
+        if hook is None:
+            return
+        known = self.protocol.commands_by_code.get(code)
+        call = EndedCall("unknown" if known is None else known.name, result, self.loop.time() - since)
+        try:
+            hook(call)
+        except Exception as failed:  # noqa: BLE001 - whatever it is, it is the robot's own
+            self._log_failure("on_call", "`on_call` failed", failed, hook)
 
     def _log_failure(self, cause: str, what: str, error: BaseException, function: Any) -> None:
         # The error's text may quote received data.

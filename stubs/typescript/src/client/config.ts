@@ -1,5 +1,6 @@
 // Configuration of a client.
 
+import type { EndedCall } from '../ended.ts'
 import type { Log } from '../log.ts'
 import { callback, duration, flag, group, host, integer, kind, orNull } from '../settings.ts'
 import type { Check } from '../settings.ts'
@@ -59,6 +60,8 @@ export interface ClientConfig {
   readonly resync?: boolean
   /** Receives log messages. Unless set, errors are written to the console. */
   readonly log?: Log
+  /** Receives the end of each call, for metrics. An error in this function is logged. */
+  readonly onCall?: (call: EndedCall) => void
 }
 
 /** Options of one call. */
@@ -106,6 +109,7 @@ export const clientCheck: Check = group<ClientConfig>({
   verifyDigest: flag,
   resync: flag,
   log: callback,
+  onCall: callback,
 })
 
 const isSignal = (value: unknown): boolean => typeof (value as AbortSignal | null)?.addEventListener === 'function'

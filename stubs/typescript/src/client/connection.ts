@@ -188,9 +188,11 @@ export class Connection<Any> {
     read: (data: Uint8Array) => Response,
   ): Promise<Response> {
     const { core } = this
-    return new Promise((resolve, reject) => {
+    let given: AbortSignal | undefined
+    const response = new Promise<Response>((resolve, reject) => {
       callCheck('CallOptions', options)
       const { timeout = core.settings.callTimeout, repeat = repeatsByItself, signal } = options
+      given = signal
       if (code === null) throw new TypeError('the command has no code yet')
       core.framing.checkCode(code)
       signal?.throwIfAborted()
@@ -227,6 +229,8 @@ export class Connection<Any> {
       })
       signal?.addEventListener('abort', stop, { once: true })
     })
+    if (code !== null) core.watch(code, response, given)
+    return response
   }
 
   /** All reports from now on. A report is acknowledged only when a receiver has it. */

@@ -13,6 +13,7 @@ import { soon } from '../platform.ts'
 import type { Platform, Transport } from '../platform.ts'
 import { Session } from '../session.ts'
 import type { FrameId } from '../session.ts'
+import { callUser, thrownFields } from '../thrown.ts'
 import type { Limits, ProtocolOf } from '../wire.ts'
 import { Arrivals } from './arrivals.ts'
 import { clientCheck, defaultBackoff } from './config.ts'
@@ -94,6 +95,7 @@ export class Core {
   readonly counters: ClientCounters = newCounters()
   /** The log. */
   readonly log: Logger
+  private readonly onCall: ClientConfig['onCall']
   private readonly arrivals: Arrivals
   private readonly alarm: Alarm
   private readonly ending = new AbortController()
@@ -107,6 +109,7 @@ export class Core {
     this.platform = platform
     this.settings = settle(protocol, config)
     this.log = new Logger(config.log, wire.name, () => this.now)
+    this.onCall = config.onCall
     const { limits } = this.settings
     this.framing = new Framing(
       wire.frame,
@@ -281,6 +284,30 @@ export class Core {
       }
     }
     soon(made, go)
+  }
+
+  /** Tells the hook when a call ends. An aborted `signal` ends it, too. */
+  watch(code: number, response: Promise<unknown>, signal: AbortSignal | undefined): void {
+    const { onCall } = this
+    if (!onCall) return
+    const since = this.now
+    const operation = this.protocol.commands.find((command) => command.code === code)?.name ?? 'unknown'
+    const ended = (result: string): void => {
+      const call = { operation, result, time: this.now - since }
+      callUser(
+        () => onCall(call),
+        (failed) => this.log.tellThinly('error', '`onCall` threw', thrownFields(failed)),
+      )
+    }
+    response.then(
+      () => {
+        ended('success')
+      },
+      (problem: unknown) => {
+        if (problem instanceof CallError) ended(problem.kind)
+        else if (signal?.aborted) ended('dropped')
+      },
+    )
   }
 
   /** Cancels a call that is no longer awaited. */

@@ -16,6 +16,8 @@ export class Called implements Context {
   readonly code: number
   /** Time the request was made, in milliseconds since 1970; `null` if it carries no time. */
   readonly time: number | null
+  /** When the request came, in milliseconds of the monotonic clock. */
+  readonly since: number
   private readonly refusal: () => Refusal
   private controller: AbortController | null = null
   private isAbandoned = false
@@ -26,6 +28,7 @@ export class Called implements Context {
     connection: ConnectionId,
     { id, code }: FrameId,
     time: number | null,
+    since: number,
     refusal: () => Refusal,
   ) {
     this.peer = peer
@@ -33,6 +36,7 @@ export class Called implements Context {
     this.id = id
     this.code = code
     this.time = time
+    this.since = since
     this.refusal = refusal
   }
 

@@ -2,6 +2,7 @@
 
 import { gzipCheck, limitsCheck } from '../client/config.ts'
 import type { Gzip } from '../client/config.ts'
+import type { EndedCall } from '../ended.ts'
 import type { Log } from '../log.ts'
 import type { Effect } from '../operation.ts'
 import { callback, duration, flag, group, host, integer, kind, listOf, orNull, rate } from '../settings.ts'
@@ -71,6 +72,8 @@ export interface ServerConfig {
    * logged.
    */
   readonly onHandlerError?: (error: unknown, context: Context) => void
+  /** Receives the end of each call, for metrics. An error in this function is logged. */
+  readonly onCall?: (call: EndedCall) => void
 }
 
 const EFFECTS: Readonly<Record<Effect, true>> = { read: true, config: true, motion: true, unknown: true }
@@ -108,4 +111,5 @@ export const serverCheck: Check = group<ServerConfig>({
   keepalive: orNull(duration),
   log: callback,
   onHandlerError: callback,
+  onCall: callback,
 })

@@ -238,7 +238,10 @@ export class Peer {
   }
 
   private handle(route: Route, id: FrameId, { request, time }: RequestRead, weight: number): number {
-    const context = new Called(this.address, this.id, id, time, () => this.shared.notImplemented(id.code, this.id))
+    const { shared } = this
+    const context = new Called(this.address, this.id, id, time, shared.now, () =>
+      shared.notImplemented(id.code, this.id),
+    )
     let answer: unknown
     try {
       answer = route.handle(request, context)
@@ -291,7 +294,7 @@ export class Peer {
     for (const work of this.works) {
       if (work.deadline > now) break
       this.abandon(work)
-      this.refuse(work.request, this.shared.protocol.wire.results.timeout)
+      this.refuse(work.request, this.shared.protocol.wire.results.timeout, work.context.since)
     }
     this.settled()
   }
@@ -310,7 +313,7 @@ export class Peer {
     const { success, protocol } = this.shared.protocol.wire.results
     if (problem instanceof Refusal && problem.code !== success.code) {
       try {
-        return this.refuse(id, problem)
+        return this.refuse(id, problem, context.since)
       } catch (invalid) {
         if (!(invalid instanceof BodyError)) throw invalid
         this.invalid(context, id, invalid)
@@ -318,7 +321,7 @@ export class Peer {
       }
     }
     this.panicked(context, problem)
-    this.refuse(id, because(protocol, 'the handler threw'))
+    this.refuse(id, because(protocol, 'the handler threw'), context.since)
     return 0
   }
 
@@ -331,7 +334,7 @@ export class Peer {
   private invalid(context: Called, id: FrameId, problem: BodyError): void {
     const { kind: error, path, expected } = problem
     this.shared.handlerFailed("the handler's response breaks the spec", problem, context, { error, path, expected })
-    this.refuse(id, this.shared.protocol.wire.results.protocol)
+    this.refuse(id, this.shared.protocol.wire.results.protocol, context.since)
   }
 
   private answer(route: Route, context: Called, id: FrameId, response: unknown): void {
@@ -348,51 +351,63 @@ export class Peer {
     this.post(
       { ...id, response: true },
       data,
-      () => shared.counters.callsSucceeded++,
+      () => {
+        shared.counters.callsSucceeded++
+        shared.callEnded(id.code, 'success', context.since)
+      },
       () => {
         const problem = new RangeError('the response does not fit into a frame')
         shared.handlerFailed(problem.message, problem, context, {})
-        this.refuse(id, shared.protocol.wire.results.protocol)
+        this.refuse(id, shared.protocol.wire.results.protocol, context.since)
       },
     )
   }
 
   /**
    * Responds with a result alone, or not at all in a protocol without result codes. Returns the time to rest if the
-   * request was useless, in milliseconds.
+   * request was useless, in milliseconds. The request came at `since`.
    */
-  private refuse(id: FrameId, result: ResultText): number {
+  private refuse(id: FrameId, result: ResultText, since: number = this.shared.now): number {
     const { shared } = this
     const { results } = shared.protocol.wire
     const { counters } = shared
     // A handler's own result may be invalid, which throws a `BodyError`.
     const data = shared.bodies.hasResult ? shared.bodies.writeResponse(result, keys, {}) : null
     let isUsable = false
+    let ended: string
     switch (result.code) {
       case results.protocol.code:
         counters.callsProtocol++
+        ended = 'protocol'
         break
       case results.timeout.code:
         counters.callsTimedOut++
+        ended = 'timeout'
         isUsable = true
         break
       case results.invalid.code:
         counters.callsInvalid++
+        ended = 'invalid'
         break
       case results.expired.code:
         counters.callsExpired++
+        ended = 'expired'
         break
       default:
         counters.callsRefused++
+        ended = 'refused'
         isUsable = true
+    }
+    const tell = (): void => {
+      shared.callEnded(id.code, ended, since)
     }
     // The text of a result may quote the body: only the code is logged.
     shared.log.tell('debug', 'refused', { code: id.code, id: id.id, result: result.code })
     if (data) {
       // The protocol's own result is the shortest response.
-      const tooLong = result === results.protocol ? nothing : (): void => void this.refuse(id, results.protocol)
-      this.post({ ...id, response: true }, data, nothing, tooLong)
-    }
+      const tooLong = result === results.protocol ? nothing : (): void => void this.refuse(id, results.protocol, since)
+      this.post({ ...id, response: true }, data, tell, tooLong)
+    } else tell()
     return isUsable ? 0 : this.pace.unusable(shared.now)
   }
 

@@ -176,6 +176,17 @@ export class Shared {
     )
   }
 
+  /** Tells the hook that a call which began at `since` has ended. */
+  callEnded(code: number, result: string, since: number): void {
+    const { onCall } = this.config
+    if (!onCall) return
+    const call = { operation: this.routes.nameOf(code), result, time: this.now - since }
+    callUser(
+      () => onCall(call),
+      (failed) => this.log.tellThinly('error', '`onCall` threw', thrownFields(failed)),
+    )
+  }
+
   /** Returns the refusal of a command that this robot does not implement. */
   notImplemented(code: number, connection: ConnectionId): Refusal {
     this.counters.callsNotImplemented++

@@ -65,6 +65,8 @@ public class ClientConfig private constructor(from: ClientConfig?) {
         private set
     internal var log: Log? = from?.log
         private set
+    internal var onCall: Consumer<EndedCall>? = from?.onCall
+        private set
 
     private inline fun with(change: ClientConfig.() -> Unit): ClientConfig = ClientConfig(this).apply(change)
 
@@ -128,6 +130,9 @@ public class ClientConfig private constructor(from: ClientConfig?) {
     /** Takes the log lines of the connection. Unset: errors are printed to `System.err`. */
     public fun log(log: Log?): ClientConfig = with { this.log = log }
 
+    /** Calls [hook] with the end of each call, for metrics, on the thread of the call. An exception of the hook is logged. */
+    public fun onCall(hook: Consumer<EndedCall>?): ClientConfig = with { onCall = hook }
+
     internal fun limitsOr(protocol: Protocol): Limits = limits ?: protocol.defaults.limits
 
     internal fun decoder(protocol: Protocol) = Decoder(protocol, limitsOr(protocol), verifyDigest, resync)
@@ -185,6 +190,8 @@ public class ServerConfig private constructor(from: ServerConfig?) {
     internal var log: Log? = from?.log
         private set
     internal var onHandlerError: BiConsumer<Throwable, Context>? = from?.onHandlerError
+        private set
+    internal var onCall: Consumer<EndedCall>? = from?.onCall
         private set
 
     private inline fun with(change: ServerConfig.() -> Unit): ServerConfig = ServerConfig(this).apply(change)
@@ -302,6 +309,12 @@ public class ServerConfig private constructor(from: ServerConfig?) {
      * The hook runs on the thread of the handler. An exception of the hook is logged.
      */
     public fun onHandlerError(hook: BiConsumer<Throwable, Context>?): ServerConfig = with { onHandlerError = hook }
+
+    /**
+     * Calls [hook] with the end of each call, for metrics. It runs on the thread of all connections, so it must not block.
+     * An exception of the hook is logged.
+     */
+    public fun onCall(hook: Consumer<EndedCall>?): ServerConfig = with { onCall = hook }
 
     internal fun limitsOr(protocol: Protocol): Limits = limits ?: protocol.defaults.limits
 

@@ -1,5 +1,6 @@
 package fc.runtime
 
+import java.util.concurrent.CancellationException
 import java.util.concurrent.CompletableFuture
 import java.util.concurrent.TimeUnit
 import java.util.function.Consumer
@@ -65,8 +66,10 @@ public class Connection internal constructor(internal val core: ClientCore, priv
         request: Q,
         options: CallOptions = CallOptions(),
     ): A {
-        val body = prepared(command, request)
-        return response(command, sent(command.code, command.effect == Effect.READ, options, body))
+        return told(command.code) {
+            val body = prepared(command, request)
+            response(command, sent(command.code, command.effect == Effect.READ, options, body))
+        }
     }
 
     /** [call] for Java. Cancelling the future cancels the call. The future fails with a [CallError]. */
@@ -86,16 +89,36 @@ public class Connection internal constructor(internal val core: ClientCore, priv
     @JvmSynthetic
     public suspend fun callRaw(code: Int, json: String, options: CallOptions = CallOptions()): RawResponse {
         protocol.header.checkCode(code)
-        val body = encoded {
-            val keys = Bodies.decode(Keys, json.toByteArray(), core.limits.json())
-            Bodies.write(Envelopes.request(protocol, System.currentTimeMillis()), keys)
+        return told(code) {
+            val body = encoded {
+                val keys = Bodies.decode(Keys, json.toByteArray(), core.limits.json())
+                Bodies.write(Envelopes.request(protocol, System.currentTimeMillis()), keys)
+            }
+            val answer = sent(code, false, options, body)
+            try {
+                val read = Bodies.enveloped(protocol.responseEnvelope, Empty, answer, core.limits.json())
+                RawResponse(Envelopes.resultCode(protocol, read.envelope), Bodies.utf8(answer))
+            } catch (error: BodyError) {
+                throw CallError(CallErrorKind.INVALID_RESPONSE, cause = error)
+            }
         }
-        val answer = sent(code, false, options, body)
+    }
+
+    /** Makes a call, and tells the hook its end. */
+    private inline fun <T> told(code: Int, call: () -> T): T {
+        val hook = core.config.onCall ?: return call()
+        val since = System.nanoTime()
+        var result: String? = null
         try {
-            val read = Bodies.enveloped(protocol.responseEnvelope, Empty, answer, core.limits.json())
-            return RawResponse(Envelopes.resultCode(protocol, read.envelope), Bodies.utf8(answer))
-        } catch (error: BodyError) {
-            throw CallError(CallErrorKind.INVALID_RESPONSE, cause = error)
+            return call().also { result = "success" }
+        } catch (error: CallError) {
+            result = error.name
+            throw error
+        } catch (error: CancellationException) {
+            result = "dropped"
+            throw error
+        } finally {
+            result?.let { core.told("`onCall`", hook, EndedCall.of(protocol, code, it, since)) }
         }
     }
 

@@ -27,6 +27,8 @@ internal class Peer(
         /** Bytes lent to the handler. */
         val bytes: Long,
     ) {
+        /** Time of [System.nanoTime]. */
+        val since = System.nanoTime()
         var job: Job? = null
         var deadline: Timer? = null
         var isOver = false
@@ -322,7 +324,7 @@ internal class Peer(
         !Envelopes.carries(protocol, refusal.code) -> {
             onInvalid(work, BodyError(BodyErrorKind.OUT_OF_RANGE, "the result code ${refusal.code} is no value of its field"))
         }
-        else -> ({ refuse(work.id, refusal) })
+        else -> ({ refuse(work.id, refusal, work.since) })
     }
 
     private fun onResponse(work: Work, respond: (Any?) -> Prepared, response: Any?): () -> Unit {
@@ -336,23 +338,25 @@ internal class Peer(
         return {
             server.counting.add(ServerCount.CALLS_SUCCEEDED)
             send(body, work.id.answer())
+            server.callEnded(work.id.code, "success", work.since)
         }
     }
 
     /** Handles a response that breaks the spec. */
     private fun onInvalid(work: Work, error: Exception): () -> Unit {
         server.handlerFailed(error, work.context, work.called) { "the response to $it breaks the spec" }
-        return { refuse(work.id, protocol.results.protocol) }
+        return { refuse(work, protocol.results.protocol) }
     }
 
     /** Handles a failed handler, which affects only this call. */
     private fun onFailure(work: Work, failure: Throwable): () -> Unit {
         server.counting.add(ServerCount.HANDLERS_PANICKED)
         server.handlerFailed(failure, work.context, work.called) { "the handler of $it failed" }
-        return { refuse(work.id, said(protocol.results.protocol, "the handler failed")) }
+        return { refuse(work.id, said(protocol.results.protocol, "the handler failed"), work.since) }
     }
 
-    private fun cancelled(work: Work) = refuse(work.id, said(protocol.results.protocol, "the handler was cancelled"))
+    private fun cancelled(work: Work) =
+        refuse(work.id, said(protocol.results.protocol, "the handler was cancelled"), work.since)
 
     private fun encoded(response: Message, code: Long, text: String): Prepared =
         server.encoder.prepare(Bodies.write(Envelopes.response(protocol, System.currentTimeMillis(), code, text), response))
@@ -370,7 +374,7 @@ internal class Peer(
 
     private fun late(work: Work) {
         working.remove(work)
-        refuse(work.id, protocol.results.timeout)
+        refuse(work, protocol.results.timeout)
         abandon(work)
         wake()
     }
@@ -383,8 +387,13 @@ internal class Peer(
 
     private fun refuse(id: FrameId, result: ResultText) = refuse(id, Refusal(result.code, result.text))
 
-    private fun refuse(id: FrameId, refusal: Refusal) {
-        server.counting.add(counterOf(refusal.code))
+    private fun refuse(work: Work, result: ResultText) = refuse(work.id, Refusal(result.code, result.text), work.since)
+
+    /** Responds with a refusal. The request began at [since]. */
+    private fun refuse(id: FrameId, refusal: Refusal, since: Long = System.nanoTime()) {
+        val counter = counterOf(refusal.code)
+        server.counting.add(counter)
+        server.callEnded(id.code, nameOf(counter), since)
         if (!Envelopes.hasResult(protocol)) return
         val body = refused(refusal.code, refusal.text) ?: protocol.results.protocol.run { refused(code, text) }
         if (body != null) send(body, id.answer())
@@ -396,6 +405,14 @@ internal class Peer(
         protocol.results.invalid.code -> ServerCount.CALLS_INVALID
         protocol.results.expired.code -> ServerCount.CALLS_EXPIRED
         else -> ServerCount.CALLS_REFUSED
+    }
+
+    private fun nameOf(counter: ServerCount): String = when (counter) {
+        ServerCount.CALLS_PROTOCOL -> "protocol"
+        ServerCount.CALLS_TIMED_OUT -> "timeout"
+        ServerCount.CALLS_INVALID -> "invalid"
+        ServerCount.CALLS_EXPIRED -> "expired"
+        else -> "refused"
     }
 
     /** Encodes a refusal. Returns `null` if its text does not fit into a frame. */

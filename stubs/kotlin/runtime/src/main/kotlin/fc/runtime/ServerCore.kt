@@ -116,6 +116,16 @@ internal class ServerCore(
         }
     }
 
+    /** Calls the hook for the end of a call of the app that began at [since]. */
+    fun callEnded(code: Int, result: String, since: Long) {
+        val hook = config.onCall ?: return
+        try {
+            hook.accept(EndedCall.of(protocol, code, result, since))
+        } catch (failure: Throwable) {
+            lines.failed("`onCall` failed", failure, hook)
+        }
+    }
+
     /** Returns the effects that an address may call, or `null` if it may not connect. */
     private fun allowed(address: SocketAddress?): Set<Effect>? {
         val effects = config.allowed.effects(host(address))

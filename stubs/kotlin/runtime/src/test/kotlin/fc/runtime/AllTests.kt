@@ -27,6 +27,7 @@ internal fun main(arguments: Array<String>) {
         Triple("samples", 1, ::sampleTests),
         Triple("over sockets", 20, ::netTests),
         Triple("over TLS", 7, ::tlsTests),
+        Triple("metrics", 3, ::metricsTests),
     )
     val wanted = arguments.drop(1).ifEmpty { suites.map { it.first } }
     require(suites.map { it.first }.containsAll(wanted)) { "there is no such suite: $wanted" }
