@@ -14,7 +14,7 @@ use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::{Project, in_repository};
-use crate::spec::{Spec, show_faults};
+use crate::spec::Spec;
 
 /// Options of `fcproto check`.
 #[derive(Debug, clap::Args)]
@@ -238,7 +238,7 @@ impl Shown {
     ) -> Result<(), Failure> {
         let format = match self {
             Self::Text => {
-                show_faults(faults, sources)?;
+                print::faults(faults, sources)?;
                 return Ok(());
             }
             Self::Json => Format::Json,

@@ -3,16 +3,18 @@
 use fc_codegen::output::OutputError;
 use fc_codegen::target::TargetError;
 use fc_diff::VersionError;
+use fc_spec::diagnostic::{Faults, Format, render, summary};
 use fc_spec::load::SettleError;
 use fc_spec::model::{DumpError, ProjectionError};
 use fc_spec::retire::RetireError;
 use fc_spec::scaffold::ScaffoldError;
+use fc_spec::source::Sources;
 use fc_workshop::arguments::ArgumentError;
 use fc_workshop::client::ClientError;
 use fc_workshop::fault::FaultError;
 use fc_workshop::listen::ListenError;
 
-use crate::lang::{in_lang, said};
+use crate::lang::{in_lang, lang, said};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
@@ -60,8 +62,19 @@ pub fn message(text: &str) -> io::Result<()> {
     anstream::stderr().lock().write_all(text.as_bytes())
 }
 
+/// Prints diagnostics as text, with a hint for more information.
+pub fn faults(faults: &Faults, sources: &Sources) -> io::Result<()> {
+    let text = render(faults, sources, Format::Colored, lang());
+    let summary = summary(faults, lang()).map(|line| leveled(&line) + "\n");
+    message(&(text + &summary.unwrap_or_default()))
+}
+
 /// Prints the reason why a command failed.
 pub fn failure(failure: &(dyn Error + 'static)) {
+    if let Some(TargetError::Settings(settings)) = failure.downcast_ref() {
+        let _ = faults(&settings.faults, &settings.sources);
+        return;
+    }
     let failure = words(failure);
     // If standard error is closed as well, the exit status is the only signal.
     let error = said!("错误：{failure}\n", "error: {failure}\n");

@@ -24,8 +24,8 @@ pub struct Options {
 pub fn help() -> Help {
     Help {
         summary: both(
-            "输出规范语言的 JSON Schema",
-            "Print the JSON Schema of the spec language",
+            "输出规范语言、`fc.yaml` 或模型的 JSON Schema",
+            "Print the JSON Schema of the spec, `fc.yaml` or a dump",
         ),
         details: vec![
             Part::Text(both(
@@ -35,6 +35,7 @@ pub fn help() -> Help {
             )),
             Part::Examples(vec![
                 ("fcproto schema", ""),
+                ("fcproto schema project > fc-project.schema.json", ""),
                 ("fcproto schema dump > dump.schema.json", ""),
             ]),
         ],
@@ -48,6 +49,8 @@ pub fn help() -> Help {
 enum Of {
     #[value(help = both("规范语言", "The spec language"))]
     Spec,
+    #[value(help = both("`fc.yaml`", "`fc.yaml`"))]
+    Project,
     #[value(help = both("`fcproto inspect` 的输出", "The output of `fcproto inspect`"))]
     Dump,
 }
@@ -59,6 +62,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             let project = Project::find(place).ok();
             fc_spec::language::schema(project.map_or(Languages::All, |it| it.targets.texts))
         }
+        Of::Project => fc_spec::language::project_schema(),
         Of::Dump => fc_spec::model::Dump::schema(),
     })?;
     Ok(Status::Fine)

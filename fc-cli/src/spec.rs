@@ -1,7 +1,7 @@
 //! Reads the spec and shows its diagnostics.
 
 use fc_codegen::check::{Requirements, check};
-use fc_spec::diagnostic::{FaultCode, Faults, Format, Severity, render, summary};
+use fc_spec::diagnostic::{FaultCode, Faults, Severity};
 use fc_spec::model::{Languages, Model};
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
@@ -91,7 +91,7 @@ impl Spec {
 
     /// Shows the diagnostics as text, with a hint for more information.
     pub fn show_faults(&self) -> Result<(), Failure> {
-        show_faults(&self.faults, &self.sources)
+        Ok(print::faults(&self.faults, &self.sources)?)
     }
 
     /// Returns the exit status for the diagnostics.
@@ -113,12 +113,4 @@ impl Spec {
     pub fn files(&self) -> usize {
         self.sources.iter().count()
     }
-}
-
-/// Shows diagnostics as text, with a hint for more information.
-pub fn show_faults(faults: &Faults, sources: &Sources) -> Result<(), Failure> {
-    let text = render(faults, sources, Format::Colored, lang());
-    let summary = summary(faults, lang()).map(|line| print::leveled(&line) + "\n");
-    print::message(&(text + &summary.unwrap_or_default()))?;
-    Ok(())
 }

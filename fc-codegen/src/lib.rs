@@ -16,7 +16,6 @@ pub mod questions;
 pub mod target;
 mod target_error;
 pub mod version;
-mod yaml_error;
 
 use fc_reflect::sample;
 

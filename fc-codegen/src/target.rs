@@ -27,11 +27,12 @@ use crate::check::Requirements;
 use crate::package::language as languages;
 use crate::plugin::{OUTPUT_BYTES, TIMEOUT_MS};
 use crate::product::{Artifact, Product, below};
-use crate::target_error::quoted;
-use fc_spec::model::{Lang, Languages, Model};
-use serde::Deserialize;
-use serde::de::IgnoredAny;
-use serde_yaml::Value as Options;
+use crate::target_error::{InvalidSettings, quoted};
+use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use fc_spec::model::{Lang, Languages, Model, Text, Value};
+use fc_spec::project::{self, ProjectSettings, TargetSettings};
+use fc_spec::source::{SourceFile, Sources, Span};
+use fc_spec::text;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -69,35 +70,6 @@ struct Settings {
     krate: String,
     /// The audience whose part of the protocol the product contains; `None` for the whole protocol.
     audience: Option<String>,
-}
-
-/// The contents of the file.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Written {
-    #[serde(default = "usual_spec")]
-    spec: String,
-    languages: Option<Vec<Lang>>,
-    targets: Option<BTreeMap<String, WrittenTarget>>,
-    /// `fc_spec::lint` reads this key and reports its errors with their positions.
-    #[serde(default, rename = "lint")]
-    _lint: IgnoredAny,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct WrittenTarget {
-    out: Option<String>,
-    languages: Option<Vec<Lang>>,
-    #[serde(rename = "crate")]
-    krate: Option<String>,
-    newtypes: Option<bool>,
-    plugin: Option<String>,
-    names: Option<String>,
-    audience: Option<String>,
-    timeout_ms: Option<u64>,
-    output_bytes: Option<u64>,
-    options: Option<Options>,
 }
 
 fn usual_spec() -> String {
@@ -146,33 +118,44 @@ impl Targets {
     ///
     /// # Errors
     ///
-    /// Returns a [`TargetError`] with the position in the file, or with the target and the key.
+    /// Returns [`TargetError::Settings`] with all errors and their places.
     pub fn read(yaml: &str) -> Result<Self, TargetError> {
-        let written: Written = serde_yaml::from_str(yaml)?;
-        let texts = match &written.languages {
-            Some(languages) => set_of(languages)?,
-            None => Languages::All,
-        };
-        let usual = match written.targets {
+        let mut sources = Sources::new();
+        let file = sources.push(SourceFile::new(FILE, yaml));
+        let mut faults = Faults::new();
+        let settings = project::read(file, yaml, &mut faults);
+        let targets = settings.map(|it| Self::from_settings(it, &mut faults));
+        match targets {
+            Some(targets) if !faults.has_errors() => Ok(targets),
+            _ => Err(TargetError::Settings(Box::new(InvalidSettings {
+                sources,
+                faults,
+            }))),
+        }
+    }
+
+    fn from_settings(settings: ProjectSettings, faults: &mut Faults) -> Self {
+        let texts = settings.languages.unwrap_or(Languages::All);
+        let usual = match settings.targets {
             None => Product::ALL.as_slice(),
             Some(_) => &[],
         };
         let mut targets = Self {
-            spec: written.spec,
+            spec: settings.spec.unwrap_or_else(usual_spec),
             ..Self::in_languages(texts, usual.iter().copied())
         };
-        let written_targets = written.targets.unwrap_or_default();
-        for (name, target) in written_targets {
-            match Product::named(&name) {
+        for target in settings.targets.unwrap_or_default() {
+            match Product::named(&target.name) {
                 Some(product) => {
                     targets.newtypes |= target.newtypes == Some(true);
-                    let settings = target.settings(product, name, texts)?;
+                    let settings = product_settings(product, target, texts, faults);
                     targets.products.insert(product, settings);
                 }
-                None => targets.plugins.push(target.into_plugin(name)?),
+                None => targets.plugins.extend(plugin(target, faults)),
             }
         }
-        Ok(targets)
+        targets.plugins.sort_by(|a, b| a.name.cmp(&b.name));
+        targets
     }
 
     /// Keeps only the targets with these names. An empty list keeps all targets.
@@ -367,101 +350,139 @@ pub fn part<'m>(model: &'m Model, audience: Option<&str>) -> Result<Cow<'m, Mode
     })
 }
 
-/// Returns a list of languages from `fc.yaml` as a set.
-fn set_of(languages: &[Lang]) -> Result<Languages, TargetError> {
-    match languages {
-        [] => Err(TargetError::NoLanguage),
-        [first, others @ ..] if others.iter().all(|other| other == first) => {
-            Ok(Languages::Only(*first))
-        }
-        _ => Ok(Languages::All),
+fn product_settings(
+    product: Product,
+    target: TargetSettings,
+    texts: Languages,
+    faults: &mut Faults,
+) -> Settings {
+    let is_code = !matches!(
+        product,
+        Product::Markdown | Product::Vectors | Product::Schema
+    );
+    let keys = [
+        ("plugin", false),
+        ("names", false),
+        ("options", false),
+        (TIMEOUT_MS.key, false),
+        (OUTPUT_BYTES.key, false),
+        // Their files are the same in every language.
+        (
+            "languages",
+            !matches!(product, Product::Vectors | Product::Schema),
+        ),
+        ("crate", product == Product::Rust),
+        ("newtypes", is_code),
+        // The spec language is the same for every audience.
+        ("audience", product != Product::Schema),
+    ];
+    check_keys(&target, &keys, faults);
+    let usual = Settings::usual(product, texts);
+    Settings {
+        out: target.out.unwrap_or(usual.out),
+        languages: target.languages.unwrap_or(usual.languages),
+        krate: target.krate.unwrap_or(usual.krate),
+        audience: target.audience,
     }
 }
 
-impl WrittenTarget {
-    fn settings(
-        self,
-        product: Product,
-        name: String,
-        texts: Languages,
-    ) -> Result<Settings, TargetError> {
-        let misplaced = [
-            ("plugin", self.plugin.is_some()),
-            ("names", self.names.is_some()),
-            ("options", self.options.is_some()),
-            (TIMEOUT_MS.key, self.timeout_ms.is_some()),
-            (OUTPUT_BYTES.key, self.output_bytes.is_some()),
-            // Their files are the same in every language.
-            (
-                "languages",
-                self.languages.is_some() && matches!(product, Product::Vectors | Product::Schema),
-            ),
-            ("crate", self.krate.is_some() && product != Product::Rust),
-            (
-                "newtypes",
-                self.newtypes.is_some()
-                    && matches!(
-                        product,
-                        Product::Markdown | Product::Vectors | Product::Schema
-                    ),
-            ),
-            // The spec language is the same for every audience.
-            (
-                "audience",
-                self.audience.is_some() && product == Product::Schema,
-            ),
-        ];
-        if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
-            return Err(TargetError::Misplaced { name, key });
+/// Returns the target of another program. Without a program, the name is an error.
+fn plugin(target: TargetSettings, faults: &mut Faults) -> Option<Plugin> {
+    let Some(program) = target.plugin.clone() else {
+        faults.push(unknown_target(&target));
+        return None;
+    };
+    let keys = [("languages", false), ("crate", false), ("newtypes", false)];
+    check_keys(&target, &keys, faults);
+    let names = target.names.as_deref().map(|name| {
+        let known = languages::Language::named(name);
+        if known.is_none() {
+            let span = target.value("names").unwrap_or(target.span);
+            faults.push(unknown_language(name, span));
         }
-        let usual = Settings::usual(product, texts);
-        let languages = self.languages.as_deref().map(set_of).transpose()?;
-        Ok(Settings {
-            out: self.out.unwrap_or(usual.out),
-            languages: languages.unwrap_or(usual.languages),
-            krate: self.krate.unwrap_or(usual.krate),
-            audience: self.audience,
-        })
-    }
+        known
+    });
+    let Some(out) = target.out.clone() else {
+        let message = text!(
+            "目标 `{name}` 需要 `out`",
+            "the target `{name}` needs `out`",
+            name = target.name
+        );
+        let fault = Diagnostic::error(FaultCode::MissingKey, target.span, message);
+        faults.push(fault.note(text!(
+            "写出存放文件的目录，例如 `out: handbook`",
+            "name the directory of its files, such as `out: handbook`"
+        )));
+        return None;
+    };
+    Some(Plugin {
+        program,
+        out,
+        names: names.flatten(),
+        audience: target.audience,
+        timeout: Duration::from_millis(target.timeout_ms.unwrap_or(TIMEOUT_MS.default)),
+        output_bytes: target.output_bytes.unwrap_or(OUTPUT_BYTES.default),
+        options: target.options.unwrap_or(Value::Null),
+        name: target.name,
+    })
+}
 
-    fn into_plugin(self, name: String) -> Result<Plugin, TargetError> {
-        let Some(program) = self.plugin else {
-            return Err(TargetError::Unknown { name });
-        };
-        let misplaced = [
-            ("languages", self.languages.is_some()),
-            ("crate", self.krate.is_some()),
-            ("newtypes", self.newtypes.is_some()),
-        ];
-        if let Some((key, _)) = misplaced.into_iter().find(|(_, is_there)| *is_there) {
-            return Err(TargetError::Misplaced { name, key });
+/// Reports the keys that a target cannot have.
+fn check_keys(target: &TargetSettings, keys: &[(&str, bool)], faults: &mut Faults) {
+    for (key, _) in keys.iter().filter(|(_, is_allowed)| !is_allowed) {
+        if let Some(span) = target.key(key) {
+            let message = text!(
+                "目标 `{name}` 不能有 `{key}`",
+                "the target `{name}` cannot have `{key}`",
+                name = target.name
+            );
+            faults.push(Diagnostic::error(FaultCode::MisplacedKey, span, message));
         }
-        let Some(out) = self.out else {
-            return Err(TargetError::Missing { name, key: "out" });
-        };
-        let names = match self.names {
-            Some(language) => match languages::Language::named(&language) {
-                Some(known) => Some(known),
-                None => {
-                    return Err(TargetError::Language {
-                        target: name,
-                        language,
-                    });
-                }
-            },
-            None => None,
-        };
-        let timeout = TIMEOUT_MS.of(self.timeout_ms, &name)?;
-        let output_bytes = OUTPUT_BYTES.of(self.output_bytes, &name)?;
-        Ok(Plugin {
-            name,
-            program,
-            out,
-            names,
-            audience: self.audience,
-            timeout: Duration::from_millis(timeout),
-            output_bytes,
-            options: self.options.unwrap_or_default(),
-        })
     }
+}
+
+fn unknown_target(target: &TargetSettings) -> Diagnostic {
+    let products = || Product::ALL.iter().map(|product| product.name());
+    let name = target.name.as_str();
+    let message = text!("没有产物 `{name}`", "there is no product `{name}`");
+    let fault = Diagnostic::error(FaultCode::BadWord, target.span, message);
+    with_nearest(fault, name, products()).note(text!(
+        "产物有：{known}；其他名称的目标需要 `plugin`",
+        "the products are {known}; a target of another name needs a `plugin`",
+        known = listed(products())
+    ))
+}
+
+fn unknown_language(name: &str, span: Span) -> Diagnostic {
+    let all = || languages::Language::ALL.iter().map(|it| it.name);
+    let message = text!(
+        "没有编程语言 `{name}`",
+        "there is no programming language `{name}`"
+    );
+    let fault = Diagnostic::error(FaultCode::BadWord, span, message);
+    with_nearest(fault, name, all()).note(text!(
+        "语言有：{known}",
+        "the languages are {known}",
+        known = listed(all())
+    ))
+}
+
+fn listed<'n>(names: impl Iterator<Item = &'n str>) -> Text {
+    Text::listed(names.map(|name| format!("`{name}`")))
+}
+
+fn with_nearest<'n>(
+    fault: Diagnostic,
+    word: &str,
+    words: impl Iterator<Item = &'n str>,
+) -> Diagnostic {
+    let Some(near) = nearest(word, words) else {
+        return fault;
+    };
+    let span = fault.primary.span;
+    fault.fix(
+        span,
+        near,
+        text!("是否为 `{near}`？", "did you mean `{near}`?"),
+    )
 }

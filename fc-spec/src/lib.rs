@@ -20,6 +20,7 @@ pub mod load;
 pub mod merge;
 pub mod model;
 mod names;
+pub mod project;
 pub mod rename;
 pub mod retire;
 pub mod revision;

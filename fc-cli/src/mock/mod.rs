@@ -24,7 +24,7 @@ use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::recording::read_file;
-use crate::spec::{Spec, show_faults};
+use crate::spec::Spec;
 
 /// Options of `fcproto mock`.
 #[derive(Debug, clap::Args)]
@@ -172,7 +172,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             let mut faults = Faults::new();
             let scenario = Scenario::read(&reflector, &sources, &mut faults);
             if scenario.is_none() {
-                show_faults(&faults, &sources)?;
+                print::faults(&faults, &sources)?;
                 return Ok(Status::Faulty);
             }
             scenario

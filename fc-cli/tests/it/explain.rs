@@ -62,7 +62,9 @@ fn the_model_is_json() {
 
 #[test]
 fn the_schema_is_json() {
-    let run = Project::empty().fc(&["schema"]).expect(0);
-    let schema: Value = serde_json::from_str(&run.stdout).expect("JSON");
-    assert!(schema["$schema"].is_string());
+    for of in ["spec", "project", "dump"] {
+        let run = Project::empty().fc(&["schema", of]).expect(0);
+        let schema: Value = serde_json::from_str(&run.stdout).expect("JSON");
+        assert!(schema["$schema"].is_string());
+    }
 }

@@ -90,7 +90,7 @@ fn a_project_has_a_language() {
     project.write("fc.yaml", "languages: []\n");
     let run = project.fc(&["check"]).expect(2);
     assert!(
-        run.stderr.contains("at least one of `zh` and `en`"),
+        run.stderr.contains("expected at least 1, found 0"),
         "{run:#?}"
     );
 }

@@ -24,6 +24,7 @@ const CRATES: &[Crate] = &[
             "syntax",
             "language",
             "load",
+            "project",
             "index",
             "format",
             "lint",
@@ -45,7 +46,6 @@ const CRATES: &[Crate] = &[
         rooms: &[
             "version",
             "product",
-            "yaml_error",
             "package",
             "check",
             "target_error",

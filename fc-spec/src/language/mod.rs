@@ -19,4 +19,4 @@ pub use occurrence::{Occurrence, OtherKey, Reference, Role, occurrence_at, visit
 #[cfg(test)]
 pub(crate) use reference::tables;
 pub use reference::{Key, Part, Takes, Word, reference};
-pub use schema::schema;
+pub use schema::{project_schema, schema};

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Faults;
 use crate::language::grammar::unit::UNITS;
-use crate::language::grammar::{AnyKey, FIELD_KIND, File, Kind, STATED, TEXT, Table};
+use crate::language::grammar::{AnyKey, FIELD_KIND, File, Kind, Project, STATED, TEXT, Table};
 use crate::language::scalar;
 use crate::model::{Lang, Languages, Number, Type, Value};
 use crate::source::FileId;
@@ -22,22 +22,11 @@ const LISTS_IN_TYPE: usize = 4;
 /// Returns the schema for specs whose texts are in these languages, indented, with a newline at its end.
 #[must_use]
 pub fn schema(texts: Languages) -> String {
-    whole(texts).pretty() + "\n"
-}
-
-fn whole(texts: Languages) -> Value {
     let mut definitions = Definitions {
         texts,
         done: BTreeMap::new(),
     };
-    let mut root = vec![
-        entry(
-            "$schema",
-            string("https://json-schema.org/draft/2020-12/schema"),
-        ),
-        entry("title", string("Protocol spec")),
-    ];
-    root.extend(definitions.table_entries(File::TABLE));
+    let root = definitions.table_entries(File::TABLE);
     definitions.add("body", |definitions| {
         object([
             ("type", string("object")),
@@ -48,11 +37,34 @@ fn whole(texts: Languages) -> Value {
             ("additionalProperties", definitions.kind(&FIELD_KIND)),
         ])
     });
-    root.push(entry(
+    document("Protocol spec", root, definitions)
+}
+
+/// Returns the schema of `fc.yaml`, like [`schema`].
+#[must_use]
+pub fn project_schema() -> String {
+    let mut definitions = Definitions {
+        texts: Languages::All,
+        done: BTreeMap::new(),
+    };
+    let root = definitions.table_entries(Project::TABLE);
+    document("Project settings", root, definitions)
+}
+
+fn document(title: &str, root: Vec<(String, Value)>, definitions: Definitions) -> String {
+    let mut entries = vec![
+        entry(
+            "$schema",
+            string("https://json-schema.org/draft/2020-12/schema"),
+        ),
+        entry("title", string(title)),
+    ];
+    entries.extend(root);
+    entries.push(entry(
         "$defs",
         Value::Object(definitions.done.into_iter().collect()),
     ));
-    Value::Object(root)
+    Value::Object(entries).pretty() + "\n"
 }
 
 /// The `$defs` built so far, by name.

@@ -40,7 +40,7 @@ pub use trees::Trees;
 
 pub(crate) use crate::names::is_snake as is_operation_name;
 pub(crate) use answer_edit::text as yaml_scalar;
-pub(crate) use shape::{check_keys, check_root};
+pub(crate) use shape::{check_keys, check_kind, check_root};
 pub(crate) use texts::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH};
 
 /// Reads a spec whose texts are in both languages. Returns everything readable and adds all errors to `faults`.

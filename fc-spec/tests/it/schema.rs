@@ -4,8 +4,11 @@
 use crate::good_spec;
 use crate::json_schema::Validator;
 use crate::yaml_as_json;
-use fc_spec::language::schema;
+use fc_spec::diagnostic::Faults;
+use fc_spec::language::{project_schema, schema};
 use fc_spec::model::Languages;
+use fc_spec::project;
+use fc_spec::source::{SourceFile, Sources};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -62,6 +65,43 @@ fn files_with_faults_of_shape_are_refused() {
         }
     }
     assert!(seen >= SEEN_BY_SCHEMA.len(), "only {seen} fixtures");
+}
+
+/// Settings, and whether both the reader and the schema accept them.
+#[test]
+fn settings_are_accepted_by_reader_and_schema() {
+    let root: Value = serde_json::from_str(&project_schema()).expect("the schema is JSON");
+    for (text, is_good) in [
+        ("spec: protocol\n", true),
+        ("languages: [en]\ntargets: {}\n", true),
+        (
+            "targets: { rust: { out: a, crate: b, newtypes: true } }\n",
+            true,
+        ),
+        (
+            "targets: { mine: { plugin: a, out: b, timeout_ms: 5, options: { c: [1] } } }\n",
+            true,
+        ),
+        ("lint: { levels: { STANDARD: warning } }\n", true),
+        ("target: {}\n", false),
+        ("languages: []\n", false),
+        ("languages: [fr]\n", false),
+        ("targets: [rust]\n", false),
+        ("targets: { rust: { ouut: a } }\n", false),
+        ("targets: { rust: { newtypes: often } }\n", false),
+        ("targets: { mine: { timeout_ms: 0 } }\n", false),
+        ("targets: { mine: { output_bytes: 1073741825 } }\n", false),
+        ("[]\n", false),
+    ] {
+        let mut sources = Sources::new();
+        let file = sources.push(SourceFile::new("fc.yaml", text));
+        let mut faults = Faults::new();
+        let read = project::read(file, text, &mut faults);
+        assert_eq!(read.is_some(), is_good, "{text}");
+        assert_eq!(faults.is_empty(), is_good, "{text}");
+        let accepted = Validator { root: &root }.accepts(&root, &yaml_as_json::parse(text));
+        assert_eq!(accepted, is_good, "{text}");
+    }
 }
 
 #[test]

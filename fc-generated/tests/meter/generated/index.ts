@@ -63,6 +63,7 @@ export type {
   Context,
   DataErrorKind,
   Effect,
+  EndedCall,
   Extra,
   ExtraKey,
   FollowableCall,

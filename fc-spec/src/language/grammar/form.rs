@@ -2,7 +2,7 @@
 
 use super::kind::Kind;
 use crate::language::scalar;
-use crate::model::{self, BodyState, Effect, EnumRepr, Fact, HeaderType, WireForm};
+use crate::model::{self, BodyState, Effect, EnumRepr, Fact, HeaderType, Lang, WireForm};
 use crate::syntax::{Entries as NodeEntries, Node};
 use crate::vocabulary::{IntKind, Meaning, Word};
 use std::marker::PhantomData;
@@ -64,6 +64,15 @@ forms! {
     Unit: Kind::Unit => String, scalar::text;
     /// A key of a JSON object or a name from the source document.
     WireKey: Kind::WireKey => String, scalar::text;
+    /// A language of texts.
+    LangName: Kind::Word(&[
+        ("zh", "Chinese.", "中文。"),
+        ("en", "English.", "英文。"),
+    ]) => Lang, |node: Node<'_>| match node.as_str()? {
+        "zh" => Some(Lang::Zh),
+        "en" => Some(Lang::En),
+        _ => None,
+    };
     /// The word for a missing code.
     Unassigned: Kind::Word(&[(
         "unassigned",

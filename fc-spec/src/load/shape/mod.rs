@@ -34,7 +34,7 @@ pub(crate) fn check_root(root: Node<'_>, faults: &mut Faults) {
 }
 
 /// Reports differences between `node` and `kind`. Each text must be in the languages `texts`.
-pub(super) fn check_kind(
+pub(crate) fn check_kind(
     kind: &Kind,
     node: Node<'_>,
     at: Span,
