@@ -91,7 +91,7 @@ struct Listed<'c> {
     properties: Vec<Value>,
 }
 
-/// Encodes a part of a package URL. Package URL, "Character encoding": letters, digits and `.-_~` stay.
+/// Encodes a part of a package URL. Package URL, "Character encoding": letters, digits and `.-_~:` stay.
 fn encoded(part: &str) -> String {
     let mut text = String::new();
     for byte in part.bytes() {
@@ -126,7 +126,13 @@ pub fn write(directory: &Path, packages: &Packages) -> Result<(), Failure> {
     let Packages { main, others } = packages;
     let all = || std::iter::once(main).chain(others);
     let needed = all().flat_map(|it| &it.dependencies);
-    let components = others.iter().map(|it| &it.component).chain(needed);
+    let mut components: Vec<_> = others
+        .iter()
+        .map(|it| &it.component)
+        .chain(needed)
+        .collect();
+    // A component is optional only if every package can do without it.
+    components.sort_by_key(|it| it.is_optional);
     // A dependency on one of the packages has the URL of that package.
     let mut listed = BTreeMap::new();
     for component in components {

@@ -106,14 +106,14 @@ fn sbom_lists_all_direct_dependencies() {
     let manifest = project.read("lamp/Cargo.toml");
     let manifest = manifest.replace(
         "[workspace]",
-        "license = \"MIT\"\n\n[dependencies]\ntick = { path = \"../tick\", version = \"0.3\" }\n\n\
+        "license = \"MIT\"\n\n[dependencies]\ntick = { path = \"../tick\", version = \"0.3\" }\nserde = { version = \"1\", optional = true }\n\n\
          [dev-dependencies]\nproptest = \"1\"\n\n[workspace]",
     );
     project.write("lamp/Cargo.toml", &manifest);
     project.write(
         "tick/Cargo.toml",
         "[package]\nname = \"tick\"\nversion = \"0.3.1\"\nedition = \"2024\"\n\n[dependencies]\n\
-         tokio = { version = \"1.5\", optional = true }\n\n[workspace]\n",
+         serde = \"1\"\ntokio = { version = \"1.5\", optional = true }\n\n[workspace]\n",
     );
     project.write("tick/src/lib.rs", "");
     project
@@ -132,8 +132,16 @@ fn sbom_lists_all_direct_dependencies() {
         "purl": lamp,
     });
     assert_eq!(bill["metadata"]["component"], main);
-    let requirement = json!({ "name": "fcproto:requirement", "value": "^1.5" });
+    let requirement = |value: &str| json!([{ "name": "fcproto:requirement", "value": value }]);
+    // One of the two crates needs it.
     let others = json!([
+        {
+            "type": "library",
+            "bom-ref": "pkg:cargo/serde",
+            "name": "serde",
+            "purl": "pkg:cargo/serde",
+            "properties": requirement("^1"),
+        },
         {
             "type": "library",
             "bom-ref": "pkg:cargo/tick@0.3.1",
@@ -147,13 +155,13 @@ fn sbom_lists_all_direct_dependencies() {
             "name": "tokio",
             "scope": "optional",
             "purl": "pkg:cargo/tokio",
-            "properties": [requirement],
+            "properties": requirement("^1.5"),
         },
     ]);
     assert_eq!(bill["components"], others);
     let edges = json!([
-        { "ref": lamp, "dependsOn": ["pkg:cargo/tick@0.3.1"] },
-        { "ref": "pkg:cargo/tick@0.3.1", "dependsOn": ["pkg:cargo/tokio"] },
+        { "ref": lamp, "dependsOn": ["pkg:cargo/serde", "pkg:cargo/tick@0.3.1"] },
+        { "ref": "pkg:cargo/tick@0.3.1", "dependsOn": ["pkg:cargo/serde", "pkg:cargo/tokio"] },
     ]);
     assert_eq!(bill["dependencies"], edges);
 }
