@@ -4,6 +4,8 @@ use crate::good_spec;
 use fc_codegen::emit::generate;
 use fc_codegen::product::Product;
 use fc_codegen::target::Targets;
+use fc_spec::language::project_schema;
+use serde_json::Value;
 
 fn made(yaml: &str) -> Vec<String> {
     let targets = Targets::read(yaml).expect("sound");
@@ -117,7 +119,10 @@ fn ids_have_types_where_they_are_asked_for() {
 #[test]
 fn what_the_file_cannot_say_is_refused_by_name() {
     for (yaml, message) in [
-        ("targets: [rust]", "fc.yaml:1:10: expected a mapping from "),
+        (
+            "targets: [rust]",
+            "fc.yaml:1:10: expected a mapping from texts, found a list",
+        ),
         (
             "targets:\n  rust: { ouut: a }\n",
             "fc.yaml:2:11: `ouut` is not a key of the target",
@@ -185,6 +190,22 @@ fn what_the_file_cannot_say_is_refused_by_name() {
             "{yaml}: {error}"
         );
     }
+}
+
+/// An editor shows the defaults of the grammar, and the generator has its own.
+#[test]
+fn defaults_are_those_of_the_schema() {
+    let schema: Value = serde_json::from_str(&project_schema()).expect("JSON");
+    let target = &schema["$defs"]["target"]["properties"];
+    let targets =
+        Targets::read("targets: { rust: {}, mine: { plugin: x, out: a } }").expect("sound");
+    let plugin = targets.plugins().first().expect("a plugin");
+    assert_eq!(schema["properties"]["spec"]["default"], targets.spec);
+    assert_eq!(target["crate"]["default"], targets.krate());
+    assert_eq!(target["newtypes"]["default"], targets.has_id_types());
+    let timeout = u64::try_from(plugin.timeout.as_millis()).expect("a short time");
+    assert_eq!(target["timeout_ms"]["default"], timeout);
+    assert_eq!(target["output_bytes"]["default"], plugin.output_bytes);
 }
 
 #[test]

@@ -93,6 +93,7 @@ pub(super) fn describe_key(key: &Kind) -> Text {
         Kind::Int { .. } => text!("数值", "numbers"),
         Kind::Scalar => text!("发送的值", "the values that are sent"),
         Kind::ConflictId => text!("疑问的编号", "conflict ids"),
+        Kind::Text => text!("文本", "texts"),
         _ => text!("报文中的键名", "wire keys"),
     }
 }
