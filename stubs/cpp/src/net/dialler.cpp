@@ -127,6 +127,8 @@ void Dialler::secure(const std::shared_ptr<Attempt>& attempt, const std::shared_
     }
   } catch (const std::exception& error) {
     fault = error.what();
+  } catch (...) {
+    fault = "the channel of the settings threw";
   }
   fail(*attempt, {LossKind::Unreachable, {}, fault});
 }

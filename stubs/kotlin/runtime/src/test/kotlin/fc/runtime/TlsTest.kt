@@ -62,6 +62,19 @@ private class Identity(name: String) {
 private fun context(own: Identity?, trusted: Identity): SSLContext =
     SSLContext.getInstance("TLS").apply { init(own?.keys, trusted.trust, null) }
 
+/** A link that takes few bytes each time it can write, so that a part of each record waits. */
+private class Narrow(private val link: Link) : Link by link {
+    private var room = 0
+
+    override fun open(ready: () -> Unit): Unit = link.open {
+        room = 500
+        ready()
+    }
+
+    override fun write(bytes: ByteArray, from: Int, length: Int): Int =
+        link.write(bytes, from, minOf(length, room)).also { room -= it }
+}
+
 /** Forwards one connection in small pieces of random lengths. */
 private class Dribbler(port: Int) : AutoCloseable {
     private val listener = ServerSocket(0, 1, InetAddress.getByName(LOCAL))
@@ -135,6 +148,23 @@ internal fun tlsTests(tests: Tests) {
             }
             robot.server.shutdown(10, SECONDS)
         }
+    }
+    tests.net("records that the socket takes in parts") {
+        val robot = TestRobot(ServerConfig().tls(ofRobot))
+        val loop = NioLoop("narrow")
+        val dial = Dial { done ->
+            loop.connect(LOCAL, robot.server.commandAddress.port, true) { link, failure -> done(link?.let { Narrow(it) }, failure) }
+        }
+        val secured = TlsDial(loop, dial) { Tls(ofApp, null).client(LOCAL, 1) }
+        val core = ClientCore(Toy, robot.config().callTimeout(10, SECONDS), loop, secured)
+        core.begin(isFirstOnly = true)
+        val app = Connection(core, secured)
+        val text = "x".repeat(60_000)
+        expect(text, app.call(Toy.ECHO, Echo.of(text)).text)
+        app.close()
+        app.closed()
+        robot.server.shutdown(10, SECONDS)
+        loop.end()
     }
     tests.net("a robot that closes politely has sent everything") {
         val robot = TestRobot(ServerConfig().tls(ofRobot))
