@@ -126,6 +126,11 @@ impl<'t> Docs<'t> {
         self.add(block, Words::In(Lang::En, en));
     }
 
+    /// Adds a paragraph in one language, written unchanged, unless it is empty.
+    pub fn raw_in(&mut self, language: Lang, text: impl Into<Cow<'t, str>>) {
+        self.add(Block::Raw, Words::In(language, text.into()));
+    }
+
     /// Adds a Chinese and an English sentence on one line, written unchanged.
     pub fn sentences<T: Into<Cow<'t, str>>>(&mut self, pair: [T; 2]) {
         let pair = pair.map(Into::into);

@@ -21,4 +21,5 @@ pub(crate) mod ranges;
 pub(crate) mod samples;
 pub(crate) mod source;
 pub(crate) mod style;
+pub(crate) mod template;
 pub(crate) mod wire;

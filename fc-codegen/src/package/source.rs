@@ -78,6 +78,13 @@ impl Source {
         self.comment(&self.style.comment, docs);
     }
 
+    /// Writes a documentation comment on the enclosing item.
+    pub fn inner_docs(&mut self, docs: &Docs<'_>) {
+        let comment = self.style.comment;
+        let mark = comment.inner_mark;
+        self.comment(&Comment { mark, ..comment }, docs);
+    }
+
     /// Writes an empty line, and a documentation comment on the next item.
     pub fn documented(&mut self, docs: &Docs<'_>) {
         self.blank();
@@ -129,12 +136,22 @@ impl Source {
     /// Writes `open`, the output of `body` one level deeper, and `close`, which may be empty.
     pub fn enclose(&mut self, open: &str, close: &str, body: impl FnOnce(&mut Self)) {
         self.line(open);
-        self.level += 1;
         self.opened = true;
-        body(self);
-        self.level -= 1;
+        self.deeper(1, body);
         self.line(close);
         self.opened = false;
+    }
+
+    /// Writes the output of `body` so many levels deeper.
+    pub fn deeper(&mut self, levels: usize, body: impl FnOnce(&mut Self)) {
+        self.level += levels;
+        body(self);
+        self.level -= levels;
+    }
+
+    /// Returns the style of the language.
+    pub fn style(&self) -> &'static Style {
+        self.style
     }
 
     /// Writes `open a, b close` on one line if it fits, otherwise every item on a separate line.
@@ -220,17 +237,18 @@ pub fn join<S: AsRef<str>>(items: &[S]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use std::borrow::Cow;
 
     /// A style with the comments of Java.
-    static BRACES: Style = Style {
+    pub static BRACES: Style = Style {
         width: 40,
         indent: "    ",
         comment: Comment {
             open: "/**",
             mark: " *",
+            inner_mark: " *",
             close: " */",
             begins_at_once: false,
             prose: |line| Cow::Borrowed(line),
@@ -240,6 +258,7 @@ mod tests {
         link: str::to_owned,
         integer: |value| value.to_string(),
         redacted: "",
+        templates: "",
     };
 
     /// A style with the comments of Python.
@@ -247,6 +266,7 @@ mod tests {
         comment: Comment {
             open: "\"\"\"",
             mark: "",
+            inner_mark: "",
             close: "\"\"\"",
             begins_at_once: true,
             ..BRACES.comment

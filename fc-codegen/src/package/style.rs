@@ -17,6 +17,8 @@ pub struct Style {
     pub integer: fn(i128) -> String,
     /// The phrase for a value that is not printed.
     pub redacted: &'static str,
+    /// The source text that does not depend on the spec: see [`Source::template`](super::source::Source::template).
+    pub templates: &'static str,
 }
 
 /// A documentation comment.
@@ -26,6 +28,8 @@ pub struct Comment {
     pub open: &'static str,
     /// The start of each line.
     pub mark: &'static str,
+    /// The start of each line of a comment on the enclosing item.
+    pub inner_mark: &'static str,
     /// The end of the comment.
     pub close: &'static str,
     /// `true` if the text begins directly after `open`.

@@ -15,6 +15,41 @@ const WORDS: [&str; 5] = [
     "struct Group ",
 ];
 
+/// Returns the texts of an emitter's files: the sources, and then the templates.
+fn texts(emitter: &str) -> [String; 2] {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("src/emit")
+        .join(emitter);
+    let mut texts = [String::new(), String::new()];
+    for file in fs::read_dir(folder).expect("each emitter is a folder") {
+        let path = file.expect("it can be read").path();
+        let is_template = path.extension().is_some_and(|it| it == "in");
+        let text = fs::read_to_string(&path).expect("it is a text");
+        texts[usize::from(is_template)].push_str(&text);
+    }
+    texts
+}
+
+#[test]
+fn every_template_is_used_and_every_used_one_exists() {
+    for emitter in EMITTERS {
+        let [sources, templates] = texts(emitter);
+        let names = templates.lines().filter_map(|it| it.strip_prefix("---- "));
+        let names: Vec<&str> = names.collect();
+        let is_named = |name: &str| sources.contains(&format!("\"{name}\""));
+        // The list of all operations of a kind has its name from the kind.
+        let is_unused = |name: &&&str| !is_named(name) && !name.starts_with("all_");
+        assert_eq!(names.iter().find(is_unused), None, "{emitter}");
+        for call in [".template(\"", ".head(\""] {
+            let mut used = sources
+                .split(call)
+                .skip(1)
+                .filter_map(|it| it.split('"').next());
+            assert_eq!(used.find(|name| !names.contains(name)), None, "{emitter}");
+        }
+    }
+}
+
 #[test]
 fn emitters_read_no_word_that_package_spells() {
     let emit = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/emit");

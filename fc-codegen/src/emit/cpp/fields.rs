@@ -322,18 +322,14 @@ fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
     let Some((command, name)) = context.package.declared_by(item) else {
         return;
     };
-    out.enclose(
-        &format!("fc_runtime::Refusal refusal({name} error) {{"),
-        "}",
+    out.block(
+        format!("fc_runtime::Refusal refusal({name} error)"),
         |out| {
             out.line("std::string text;");
-            out.enclose("switch (error) {", "}", |out| {
+            out.block("switch (error)", |out| {
                 for (_, result) in context.package.errors(command) {
-                    let text = literal(&result.text.zh);
-                    out.line(format!(
-                        "case {name}::{}: text = {text}; break;",
-                        result.name
-                    ));
+                    let (value, text) = (&result.name, literal(&result.text.zh));
+                    out.line(format!("case {name}::{value}: text = {text}; break;"));
                 }
             });
             out.line("return {static_cast<std::int64_t>(error), std::move(text)};");
@@ -344,18 +340,9 @@ fn errors(out: &mut Source, context: &Context<'_>, item: &Item<'_>) {
 /// Defines the functions that the header declares for a type.
 fn functions(out: &mut Source, item: &Item<'_>) {
     let name = &item.ty.name;
-    let codec = format!("fc_runtime::Codec<{name}>");
     match &item.shape {
         Shape::Record(..) => {
-            out.line(format!(
-                "bool operator==(const {name}& left, const {name}& right) {{ return {codec}::equal(left, right); }}"
-            ));
-            out.line(format!(
-                "bool operator!=(const {name}& left, const {name}& right) {{ return !(left == right); }}"
-            ));
-            out.line(format!(
-                "std::ostream& operator<<(std::ostream& out, const {name}& message) {{ {codec}::print(out, message); return out; }}"
-            ));
+            out.template("operators", &[("name", name)]);
         }
         Shape::Enum(shape, values) => of_enum(out, item, shape, values),
         Shape::Choice(..) => {}
@@ -371,20 +358,7 @@ fn of_enum(out: &mut Source, item: &Item<'_>, shape: &EnumType, values: &[Spelle
         name.to_string()
     };
     if is_text {
-        out.line(format!(
-            "{name}::{name}(Value value) : wire_(fc_runtime::Values<{name}>::all[static_cast<std::size_t>(value)].wire) {{}}"
-        ));
-        out.enclose(
-            &format!("std::optional<{name}::Value> {name}::value() const {{"),
-            "}",
-            |out| {
-                out.line("const auto* known = fc_runtime::detail::find_value(*this);");
-                out.line("if (known == nullptr) return std::nullopt;");
-                out.line(format!(
-                    "return static_cast<Value>(known - fc_runtime::Values<{name}>::all);"
-                ));
-            },
-        );
+        out.template("text_value", &[("name", name)]);
     }
     let found = "fc_runtime::detail::find_value(value)";
     out.line(format!(

@@ -40,6 +40,13 @@ impl NamedGroup<'_, '_> {
         free(&[&name], is_taken)
     }
 
+    /// Writes a part whose methods are those of the class that derives from it.
+    pub fn mixin(&self, out: &mut Source, part: &str, methods: impl FnOnce(&mut Source)) {
+        let name = self.part(part);
+        out.line(format!("template <class Self>\nclass {name} {{\n public:"));
+        out.enclose("", "};", methods);
+    }
+
     /// Returns the name of a part outside the namespace: `groups::IdentityCalls`.
     pub fn named(&self, part: &str) -> String {
         format!("{}::{}", self.space, self.part(part))

@@ -4,7 +4,6 @@ use super::layout::{Includes, header_file};
 use super::types::{name_of, namespace};
 use crate::package::about;
 use crate::package::context::Context;
-use crate::package::source::Source;
 use fc_spec::model::Type;
 
 /// Returns the path of the header, relative to the includes.
@@ -30,20 +29,17 @@ pub fn header(context: &Context<'_>) -> String {
         for (id, held) in &ids {
             out.documented(&about::id(context, id.of));
             let base = format!("fc_runtime::Id<{}, {}>", id.name, name_of(context, held));
-            out.class(&id.name, &[format!("public {base}")]);
+            out.line(out.class(&id.name, &[format!("public {base}")]));
             out.line(" public:\n  using Id::Id;\n};");
         }
     });
     let mut hashes = context.source();
     for (id, _) in &ids {
-        hash(&mut hashes, space, &id.name);
+        let name = &id.name;
+        hashes.line(format!(
+            "template <>\nstruct std::hash<{space}::{name}> : fc_runtime::HashOfId {{}};"
+        ));
     }
     out.push('\n');
     out + &hashes.finish()
-}
-
-fn hash(out: &mut Source, space: &str, name: &str) {
-    out.line("template <>");
-    let head = format!("struct std::hash<{space}::{name}> : fc_runtime::HashOfId {{}};");
-    out.line(head);
 }

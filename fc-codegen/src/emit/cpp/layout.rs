@@ -16,6 +16,7 @@ pub static CPP: Style = Style {
     comment: Comment {
         open: "",
         mark: "///",
+        inner_mark: "///",
         close: "",
         begins_at_once: false,
         prose: |line| unspliced(line, "&#92;"),
@@ -25,6 +26,7 @@ pub static CPP: Style = Style {
     link: |name| format!("`{name}`"),
     integer: |value| value.to_string(),
     redacted: "Never printed.",
+    templates: include_str!("templates.cpp.in"),
 };
 
 /// Replaces backslashes that could end a line of a comment after wrapping.
@@ -185,17 +187,17 @@ impl Source {
         self.line(if is_below { below } else { beside });
     }
 
-    /// Writes the first line of a class with its bases. Bases that exceed the line have one line each.
-    pub fn class(&mut self, name: &str, bases: &[String]) {
+    /// Returns the first line of a class with its bases. Bases that exceed the line have one line each.
+    pub fn class(&self, name: &str, bases: &[String]) -> String {
         if bases.is_empty() {
-            return self.line(format!("class {name} {{"));
+            return format!("class {name} {{");
         }
         let open = format!("class {name} : ");
         if self.has_room([&open, &join(bases), " {"]) {
-            return self.line([&open, &*join(bases), " {"].concat());
+            return [&open, &*join(bases), " {"].concat();
         }
         let between = format!(",\n{}", " ".repeat(columns_of(&open)));
-        self.line([&open, &*bases.join(&between), " {"].concat());
+        [&open, &*bases.join(&between), " {"].concat()
     }
 
     /// Writes a namespace, whose contents are not indented.

@@ -11,7 +11,6 @@ use super::types::{Header, field_type, integer_type, namespace};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
-use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
 use crate::package::items::{Call, Item, Shape, Spelled};
@@ -130,11 +129,7 @@ fn structure(
             }
             out.line(format!("{ty} {};", field.name));
         }
-        out.docs(&Docs::line([
-            "其他键，原样保留。",
-            "Other keys, kept unchanged.",
-        ]));
-        out.line("fc_runtime::Extra extra;");
+        out.template("extra", &[]);
         for field in fields {
             let Some(default) = field.details().default.as_ref().filter(|_| field.optional) else {
                 continue;
@@ -143,11 +138,7 @@ fn structure(
             let value = expressions.held(field, &Value::from(default));
             let value = tables::spelled_in(context, "", &value, &ty);
             let name = &field.name;
-            out.blank();
-            out.docs(&Docs::line([
-                format!("`{name}`，没有时为规范的默认值。"),
-                format!("`{name}`, or its default."),
-            ]));
+            out.template("or_default", &[("name", name)]);
             // A C++ name must not have two underscores in a row.
             let stem = name.trim_end_matches('_');
             let open = format!("[[nodiscard]] {ty} {stem}_or_default() const {{");
@@ -217,28 +208,15 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, item
     };
     includes.standard("cstdint");
     out.documented(&about::errors(context, command));
-    out.enclose(
-        &format!("enum class {name} : std::int64_t {{"),
-        "};",
-        |out| {
-            for (error, result) in package.errors(command) {
-                out.docs(&about::error(error, result.of));
-                out.line(format!(
-                    "{} = {},",
-                    result.name,
-                    integer(result.code.into())
-                ));
-            }
-        },
-    );
-    out.blank();
-    out.docs(&Docs::line([
-        "以此错误拒绝。",
-        "A refusal with this error.",
-    ]));
-    out.line(format!(
-        "[[nodiscard]] fc_runtime::Refusal refusal({name} error);"
-    ));
+    let open = format!("enum class {name} : std::int64_t {{");
+    out.enclose(&open, "};", |out| {
+        for (error, result) in package.errors(command) {
+            out.docs(&about::error(error, result.of));
+            let code = integer(result.code.into());
+            out.line(format!("{} = {code},", result.name));
+        }
+    });
+    out.template("declare_error", &[("name", name)]);
     includes.own("fc_runtime/call.hpp");
 }
 
@@ -282,14 +260,7 @@ fn enumeration(
             format!("const {name}&")
         }
     };
-    out.blank();
-    out.docs(&Docs::line([
-        "是否为规范中的值。",
-        "Returns `true` for a value of the spec.",
-    ]));
-    out.line(format!(
-        "[[nodiscard]] bool is_known({by_value} value) noexcept;"
-    ));
+    out.template("is_known", &[("by_value", &by_value)]);
     if has_states(shape) {
         process::declare(out, &by_value, shape);
     }
@@ -299,31 +270,11 @@ fn enumeration(
 
 /// Writes an enum with string values. The enum keeps unknown values.
 fn text_enum(out: &mut Source, name: &str, each: impl FnOnce(&mut Source)) {
-    out.line(format!("class {name} {{"));
-    out.line(" public:");
-    out.enclose("", "", |out| {
-        out.docs(&Docs::line(["规范中的值。", "The values of the spec."]));
-        out.enclose("enum class Value {", "};", each);
-        out.blank();
-        out.line(format!("{name}() = default;"));
-        out.line("// NOLINTNEXTLINE(google-explicit-constructor): a value is one of these");
-        out.line(format!("{name}(Value value);"));
-        out.docs(&Docs::line([
-            "其他文字，原样保留。",
-            "Any text, kept unchanged.",
-        ]));
-        out.line(format!(
-            "explicit {name}(std::string wire) : wire_(std::move(wire)) {{}}"
-        ));
-        out.blank();
-        out.docs(&Docs::line([
-            "规范中的值；其他文字没有。",
-            "The value of the spec; empty for any other text.",
-        ]));
-        out.line("[[nodiscard]] std::optional<Value> value() const;");
-        out.docs(&Docs::line(["报文中的文字。", "The text that is sent."]));
-        out.line("[[nodiscard]] const std::string& wire() const noexcept { return wire_; }");
-        out.blank();
+    out.template("text_values", &[("name", name)]);
+    out.deeper(1, |out| out.enclose("enum class Value {", "};", each));
+    out.template("text_enum", &[("name", name)]);
+    out.blank();
+    out.deeper(1, |out| {
         for (operator, not) in [("==", ""), ("!=", "!")] {
             let parameters = [
                 format!("const {name}& left"),
@@ -346,9 +297,7 @@ fn text_enum(out: &mut Source, name: &str, each: impl FnOnce(&mut Source)) {
         }
     });
     out.blank();
-    out.line(" private:");
-    out.line("  std::string wire_;");
-    out.line("};");
+    out.line(" private:\n  std::string wire_;\n};");
 }
 
 fn choice(

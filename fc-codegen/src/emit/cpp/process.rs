@@ -3,7 +3,6 @@
 use super::fields::enumerators;
 use super::types::namespace;
 use crate::package::context::{Context, Step};
-use crate::package::docs::Docs;
 use crate::package::items::{Call, Item, Shape, Spelled};
 use crate::package::process::{has_states, next_values, set_off, state};
 use crate::package::source::Source;
@@ -13,43 +12,14 @@ use fc_spec::model::{
 
 /// Declares the functions over the states of an enum.
 pub fn declare(out: &mut Source, by_value: &str, shape: &EnumType) {
-    for (zh, en, name) in [
-        (
-            "是否为终态。",
-            "Returns `true` for a final state.",
-            "is_final",
-        ),
-        (
-            "是否表示失败。",
-            "Returns `true` for a failure.",
-            "is_error",
-        ),
-    ] {
-        out.docs(&Docs::line([zh, en]));
-        out.line(format!(
-            "[[nodiscard]] bool {name}({by_value} value) noexcept;"
-        ));
-    }
+    out.template("states", &[("by_value", by_value)]);
     let parameters = [format!("{by_value} value"), format!("{by_value} previous")];
     if shape.order.is_some() {
-        out.docs(&Docs::two_lines(if is_complete(shape) {
-            [
-                "规范列出的全部切换中，是否可以直接跟在 `previous` 之后。",
-                "Returns `true` if the spec lists the change from `previous`. No other change occurs.",
-            ]
-        } else {
-            [
-                "正常顺序中是否跟在 `previous` 之后；也可能出现其他切换。",
-                "Returns `true` if it follows `previous` in the normal order. Other changes may occur as well.",
-            ]
-        }));
+        out.template(follows(shape), &[]);
         let open = format!("[[nodiscard]] bool {}(", follows(shape));
         out.parameters(&open, &parameters, ") noexcept;");
     }
-    out.docs(&Docs::said([
-        "规范是否允许 `previous` 之后出现此状态。",
-        "Returns `true` if the spec allows this state after `previous`.",
-    ]));
+    out.template("is_in_order", &[]);
     out.parameters(
         "[[nodiscard]] bool is_in_order(",
         &parameters,
@@ -79,16 +49,7 @@ pub fn define(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    for what in ["is_final", "is_error"] {
-        out.enclose(
-            &format!("bool {what}({by_value} value) noexcept {{"),
-            "}",
-            |out| {
-                out.line("const auto* known = fc_runtime::detail::find_value(value);");
-                out.line(format!("return known != nullptr && known->{what};"));
-            },
-        );
-    }
+    out.template("state", &[("by_value", by_value)]);
     let places = enumerators(item);
     let is_text = shape.repr == EnumRepr::String;
     let is = |what: &str, value: &Spelled<'_, EnumValue>| {
@@ -177,12 +138,9 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
         let known =
             known.map(|it| format!("{held} == {space}::{}::{}", enumerators(item), it.name));
         let known = any_of(&known.collect::<Vec<_>>());
-        let (request, ty) = (&call.request.ty.name, &item.ty.name);
-        out.line(format!(
-            "bool Command<{space}::{request}>::is_accepted_in(const {space}::{ty}& state) noexcept {{"
-        ));
-        out.line(format!("  return {known};"));
-        out.line("}");
+        let [request, ty] = [call.request, item].map(|it| [space, "::", &*it.ty.name].concat());
+        let values = [("request", &*request), ("ty", &ty), ("known", &known)];
+        out.template("accepted", &values);
         out.blank();
     }
 }
@@ -241,19 +199,20 @@ pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
                 )
             })
             .collect();
-        out.line(format!(
-            "bool SetsOff<{space}::{request}, {space}::{name}>::is_of(const {space}::{request}& request, const {space}::{response}& response, const {space}::{name}& report) {{"
-        ));
-        out.line("  static_cast<void>(request);");
-        out.line("  static_cast<void>(response);");
-        out.line("  static_cast<void>(report);");
         let all = if ties.is_empty() {
             "true".to_owned()
         } else {
             ties.join(" && ")
         };
-        out.line(format!("  return {all};"));
-        out.line("}");
+        let [request, response, name] =
+            [request, response, name].map(|it| [space, "::", it].concat());
+        let values = [
+            ("request", &*request),
+            ("response", &response),
+            ("report", &name),
+            ("all", &all),
+        ];
+        out.template("is_of", &values);
         out.blank();
     }
     if call.operation.kind() == Kind::Report {
@@ -283,13 +242,10 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     if let Some((way, true)) = &way {
         failures.insert(0, way.clone());
     }
-    let message = format!("const {space}::{name}&");
-    let of = format!("Report<{space}::{name}>");
+    let name = format!("{space}::{name}");
     let function = |out: &mut Source, what: &str, result: &str| {
-        out.line(format!("bool {of}::{what}({message} report) {{"));
-        out.line("  static_cast<void>(report);");
-        out.line(format!("  return {result};"));
-        out.line("}");
+        let values = [("name", &*name), ("what", what), ("result", result)];
+        out.template("of_report", &values);
         out.blank();
     };
     let has_state = way.as_ref().map(|(way, _)| format!("{way} != nullptr"));
@@ -307,23 +263,24 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
         .iter()
         .map(|way| format!("detail::holds({way}, [](const auto& it) {{ return is_error(it); }})"));
     function(out, "is_failure", &any_of(&failed.collect::<Vec<_>>()));
-    out.line(format!(
-        "bool {of}::is_in_order({message} report, {message} previous) {{"
-    ));
-    out.line("  static_cast<void>(report);");
-    out.line("  static_cast<void>(previous);");
-    match &said {
-        Some(way) => {
-            let before = way.replace("&report", "&previous");
-            out.line(format!("  const auto* now = {way};"));
-            out.line(format!("  const auto* before = {before};"));
-            out.line(format!(
-                "  return now == nullptr || before == nullptr || {space}::is_in_order(*now, *before);"
-            ));
-        }
-        None => out.line("  return true;"),
-    }
-    out.line("}");
+    let [now, before, result] = match &said {
+        Some(way) => [
+            format!("const auto* now = {way};"),
+            format!(
+                "const auto* before = {};",
+                way.replace("&report", "&previous")
+            ),
+            format!("now == nullptr || before == nullptr || {space}::is_in_order(*now, *before)"),
+        ],
+        None => ["", "", "true"].map(str::to_owned),
+    };
+    let values = [
+        ("name", &*name),
+        ("now", &now),
+        ("before", &before),
+        ("result", &result),
+    ];
+    out.template("order_of_report", &values);
     out.blank();
 }
 

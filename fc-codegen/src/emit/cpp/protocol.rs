@@ -5,7 +5,6 @@ use super::layout::{Includes, float, header_file, integer, literal, source_file}
 use super::types::namespace;
 use crate::package::about;
 use crate::package::context::{Context, page_of};
-use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::Spelled;
 use crate::package::language::Case;
@@ -38,24 +37,12 @@ fn results(out: &mut Source, context: &Context<'_>) {
     out.enclose("enum class ResultCode : std::int64_t {", "};", |out| {
         for result in &context.package.results {
             out.docs(&about::result(result.of));
-            out.line(format!(
-                "{} = {},",
-                result.name,
-                integer(result.code.into())
-            ));
+            let code = integer(result.code.into());
+            out.line(format!("{} = {code},", result.name));
         }
     });
     out.blank();
-    out.docs(&Docs::line([
-        "随结果码发送的文字。",
-        "The text sent with the code.",
-    ]));
-    out.line("[[nodiscard]] std::string_view text(ResultCode code) noexcept;");
-    out.docs(&Docs::line([
-        "以此结果码拒绝。",
-        "A refusal with this code.",
-    ]));
-    out.line("[[nodiscard]] fc_runtime::Refusal refusal(ResultCode code);");
+    out.template("result_functions", &[]);
 }
 
 /// Writes the codes of the streams, if there are any. A stream of bytes has no type that could hold its code.
@@ -63,8 +50,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     if context.package.streams.is_empty() {
         return;
     }
-    out.blank();
-    out.docs(&Docs::said(["数据流的功能码。", "Codes of streams."]));
+    out.template("stream_codes", &[]);
     out.enclose("enum class StreamCode : std::uint16_t {", "};", |out| {
         for stream in &context.package.streams {
             let mut docs = facts::operation_docs(stream);
@@ -83,11 +69,8 @@ pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
         "#include <limits>\n\n#include \"{space}/messages.hpp\"\n\n// Tables, a line for each entry.\n"
     );
     source_file(context, "protocol.hpp", &before, |out| {
-        out.line("namespace {");
-        out.blank();
-        out.line("using namespace std::string_view_literals;");
-        out.blank();
-        out.enclose("fc_runtime::Protocol make_protocol() {", "}", |out| {
+        out.line("namespace {\n\nusing namespace std::string_view_literals;\n\n");
+        out.block("fc_runtime::Protocol make_protocol()", |out| {
             out.line("fc_runtime::Protocol protocol;");
             let wire = &WireFacts::build(context);
             out.line(format!("protocol.name = {};", literal(wire.name)));
@@ -105,35 +88,18 @@ pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
             }
             out.line("return protocol;");
         });
+        out.template("protocol", &[]);
         out.blank();
-        out.line("}  // namespace");
-        out.blank();
-        out.enclose("const fc_runtime::Protocol& protocol() {", "}", |out| {
-            out.line("static const fc_runtime::Protocol made = make_protocol();");
-            out.line("return made;");
+        out.block("std::string_view text(ResultCode code) noexcept", |out| {
+            out.block("switch (code)", |out| {
+                for result in &context.package.results {
+                    let text = literal(&result.text.zh);
+                    out.line(format!("case ResultCode::{}: return {text};", result.name));
+                }
+            });
+            out.line("return {};");
         });
-        out.blank();
-        out.enclose(
-            "std::string_view text(ResultCode code) noexcept {",
-            "}",
-            |out| {
-                out.enclose("switch (code) {", "}", |out| {
-                    for result in &context.package.results {
-                        let text = literal(&result.text.zh);
-                        out.line(format!("case ResultCode::{}: return {text};", result.name));
-                    }
-                });
-                out.line("return {};");
-            },
-        );
-        out.blank();
-        out.enclose(
-            "fc_runtime::Refusal refusal(ResultCode code) {",
-            "}",
-            |out| {
-                out.line("return {static_cast<std::int64_t>(code), std::string(text(code))};");
-            },
-        );
+        out.template("refusal", &[]);
     })
 }
 
@@ -235,10 +201,7 @@ fn defaults(out: &mut Source, wire: &WireFacts<'_, '_>) {
 
 /// Declares the function that adds a group's operations to the protocol.
 pub fn declare_operations(out: &mut Source, group: &NamedGroup<'_, '_>) {
-    out.docs(&Docs::said([
-        "把这一组的指令、上报和数据流加到 `protocol().operations` 中。",
-        "Adds the operations of the group to those of `protocol()`.",
-    ]));
+    out.template("declare_operations", &[]);
     let open = format!("void add_{}(", group.id);
     let parameters = ["std::vector<fc_runtime::OperationInfo>& operations".to_owned()];
     out.parameters(&open, &parameters, ");");
@@ -246,11 +209,11 @@ pub fn declare_operations(out: &mut Source, group: &NamedGroup<'_, '_>) {
 
 /// Defines the function that adds a group's operations to the protocol.
 pub fn operations(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    let open = format!(
-        "void add_{}(std::vector<fc_runtime::OperationInfo>& operations) {{",
+    let head = format!(
+        "void add_{}(std::vector<fc_runtime::OperationInfo>& operations)",
         group.id
     );
-    out.enclose(&open, "}", |out| {
+    out.block(head, |out| {
         for operation in &group.operations {
             operation_info(out, context, operation);
         }

@@ -117,16 +117,7 @@ impl<'p, 'm> Writer<'p, 'm> {
                 self.declare(out, "report", report, &filled);
                 let push = format!("reporter.{}(report)", call.method);
                 assign(out, "const auto pushed", &push);
-                out.line(
-                    "\
-if (!pushed) {
-  std::cerr << to_string(pushed.error()) << '\\n';
-} else {
-  for (const auto& outcome : *pushed) {
-    std::cout << outcome.connection << \": \" << name(outcome.kind) << '\\n';
-  }
-}",
-                );
+                out.template("sample_push", &[]);
             }
             Sample::Subscribe(stream) => self.subscribe(out, stream, meanwhile),
             Sample::Send(stream, value) => {
@@ -317,33 +308,10 @@ fn main(out: &mut Source, space: &str, run: &SampleRun<'_, '_>) {
             out.block(asks, |out| out.line(fails));
         }
     };
-    out.line(
-        "\
-static int failed(const char* what) {
-  std::cerr << what << \" has failed\\n\";
-  return 1;
-}",
-    );
+    out.template("sample_failed", &[]);
     out.blank();
     out.block("int main()", |out| {
-        out.line(format!(
-            "\
-fc_runtime::ServerConfig served;
-served.address = \"127.0.0.1\";
-served.command_port = std::uint16_t{{0}};
-served.data_port = std::uint16_t{{0}};
-served.handler_timeout = {PATIENCE};
-const auto robot = {space}::service(std::make_shared<SampleRobot>());
-const auto server = fc_runtime::Server::bind({space}::protocol(), robot, served);
-if (!server) return failed(\"bind\");
-fc_runtime::ClientConfig config;
-config.host = \"127.0.0.1\";
-config.command_port = server->command_port();
-config.data_port = server->data_port();
-config.call_timeout = {PATIENCE};
-const auto client = {space}::Client::connect(config);
-if (!client) return failed(\"connect\");"
-        ));
+        out.template("sample_main", &[("space", space), ("patience", PATIENCE)]);
         for step in run.that(Verb::Call) {
             check(out, format!("{}(*client)", step.name()));
         }

@@ -2,7 +2,6 @@
 
 use super::groups::{self, NamedGroup};
 use crate::package::context::Context;
-use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::Spelled;
 use crate::package::source::Source;
@@ -17,26 +16,9 @@ pub fn for_app(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.documented(&Docs::said([
-        "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
-        "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
-    ]));
-    whole(out, STREAMS, &parts);
-    out.enclose("", "", |out| {
-        out.line(
-            "\
-explicit Streams(fc_runtime::DataConnection data) : robot_data_(std::move(data)) {}",
-        );
-        out.documented(&Docs::line([
-            "数据连接。",
-            "The data connection: its state, and frames without a subscription.",
-        ]));
-        out.line(
-            "[[nodiscard]] const fc_runtime::DataConnection& data() const { return robot_data_; }",
-        );
-    });
     out.blank();
-    out.line(" private:\n  fc_runtime::DataConnection robot_data_;\n};");
+    let values = [("class", &*whole(out, STREAMS, &parts))];
+    out.template("streams", &values);
 }
 
 /// Writes the robot's side, if it sends any stream.
@@ -45,36 +27,21 @@ pub fn for_robot(out: &mut Source, groups: &[NamedGroup<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.documented(&Docs::written([
-        "机器人发送的数据流：每个数据流一个方法，等到数据连接的队列有空位，返回收下的连接数。`to` 是一个\n\
-         app 的连接；不指定时发给全部 app。",
-        "Sends the streams of the robot: one method per stream, which waits for space in the queues of the data\n\
-         connections. It returns how many took the frame. `to` is the connection of one app. Without it, the\n\
-         frame goes to all apps. The server must outlive this object.",
-    ]));
-    whole(out, STREAMER, &parts);
-    out.enclose("", "", |out| {
-        out.line("explicit Streamer(const fc_runtime::Server& server) : robot_server_(&server) {}");
-        out.documented(&Docs::line([
-            "发送数据流的服务端。",
-            "The server that sends the streams.",
-        ]));
-        out.line(
-            "[[nodiscard]] const fc_runtime::Server& server() const { return *robot_server_; }",
-        );
-    });
-    out.blank();
-    out.line(" private:\n  const fc_runtime::Server* robot_server_;\n};");
+    out.template("streamer", &[]);
+    sender(out, STREAMER, &parts, ["数据流", "streams"]);
 }
 
-/// Writes the head of a class whose methods are in a part for each group.
-fn whole(out: &mut Source, name: &str, parts: &[String]) {
-    let bases: Vec<String> = parts
-        .iter()
-        .map(|it| format!("public {it}<{name}>"))
-        .collect();
-    out.class(name, &bases);
-    out.line(" public:");
+/// Writes a class that sends something of the robot.
+pub fn sender(out: &mut Source, name: &str, parts: &[String], [zh, en]: [&str; 2]) {
+    let class = &*whole(out, name, parts);
+    let values = [("class", class), ("name", name), ("zh", zh), ("en", en)];
+    out.template("sender", &values);
+}
+
+/// Returns the head of a class whose methods are in a part for each group.
+pub fn whole(out: &Source, name: &str, parts: &[String]) -> String {
+    let bases = parts.iter().map(|it| format!("public {it}<{name}>"));
+    out.class(name, &bases.collect::<Vec<_>>())
 }
 
 /// Writes the streams of a group as methods of both sides.
@@ -100,14 +67,8 @@ fn part(
     name: &str,
     methods: impl FnOnce(&mut Source),
 ) {
-    out.docs(&Docs::said([
-        format!("一组数据流，是 `{name}`（`Self`）的方法。"),
-        format!("The streams of a group as methods of `{name}` (`Self`)."),
-    ]));
-    out.line("template <class Self>");
-    out.line(format!("class {} {{", group.part(name)));
-    out.line(" public:");
-    out.enclose("", "};", methods);
+    out.template("stream_part", &[("name", name)]);
+    group.mixin(out, name, methods);
 }
 
 fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>) {

@@ -22,81 +22,8 @@ pub fn client_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     ]));
     wrapper(&mut out, "Client", PROPERTY, CONNECTION, &parts);
     let supers: Vec<String> = [vec!["AutoCloseable".to_owned()], parts].concat();
-    out.block(heading(")", &supers), |out| {
-        out.docs(&Docs::line([
-            "此刻的连接状态。",
-            "The present state of the connection.",
-        ]));
-        out.line("public val state: ConnectionState get() = connection.state");
-        out.documented(&Docs::line([
-            "连接状态的变化，先是此刻的状态。",
-            "The states of the connection, the present one first.",
-        ]));
-        out.line("public fun states(): Flow<ConnectionState> = connection.states()");
-        out.documented(&Docs::line([
-            "等到连接永久关闭，返回原因。",
-            "Waits until the connection is closed for good, and returns the reason.",
-        ]));
-        out.line(
-            "\
-@JvmSynthetic
-public suspend fun closed(): Loss = connection.closed()",
-        );
-        out.documented(&Docs::written([
-            "返回此后全部上报的接收端。没有接收端时，上报不会得到应答。",
-            "Returns a receiver of all reports from now on. Without a receiver, reports are not acknowledged. The `message` of a report has\n\
-             one of the types of [Operations]; distinguish them with `when` and `is`.",
-        ]));
-        out.line("public fun reports(): Reports = connection.reports()");
-        out.documented(&Docs::line([
-            "连接数据端口。",
-            "Connects to the data port in the background, and reconnects after a loss.",
-        ]));
-        out.line("public fun data(): DataConnection = connection.data()");
-        out.documented(&Docs::line([
-            "关闭连接。",
-            "Closes the connection.",
-        ]));
-        out.line("override fun close(): Unit = connection.close()");
-        out.documented(&Docs::line(["建立连接。", "Makes connections."]));
-        out.block("public companion object", |out| {
-            let mut docs = Docs::written([
-                "连接机器人；`config` 中没有设置的项使用规范的默认值。",
-                "Connects to a robot. Settings missing from `config` have the defaults of the spec.",
-            ]);
-            docs.raw(
-                "@throws fc.runtime.ConnectError if the first attempt fails",
-            );
-            out.docs(&docs);
-            out.line(format!(
-                "\
-@JvmSynthetic
-public suspend fun connect(config: ClientConfig = ClientConfig()): Client =
-    Client(Connection.connect({protocol}, config))"
-            ));
-            out.documented(&Docs::line([
-                "[connect]，供 Java 使用。",
-                "[connect] for Java.",
-            ]));
-            out.line(format!(
-                "\
-@JvmStatic
-@JvmOverloads
-public fun connectAsync(config: ClientConfig = ClientConfig()): CompletableFuture<Client> =
-    Connection.connectAsync({protocol}, config).thenApply {{ Client(it) }}"
-            ));
-            out.documented(&Docs::written([
-                "立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。",
-                "Returns at once and connects in the background. Calls made before that wait within their timeout.",
-            ]));
-            out.line(format!(
-                "\
-@JvmStatic
-@JvmOverloads
-public fun connectLazy(config: ClientConfig = ClientConfig()): Client = Client(Connection.connectLazy({protocol}, config))"
-            ));
-        });
-    });
+    let values = [("heading", &*heading(")", &supers)), ("protocol", protocol)];
+    out.template("client", &values);
     streams::for_app(&mut out, groups);
     out
 }
@@ -157,9 +84,8 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &format!("): {response} ="),
         &format!("connection.call(Operations.{method}, request, options)"),
     );
-    let docs = for_java(method);
     let mut twin = |parameters: &[String], body: &str| {
-        out.documented(&docs);
+        for_java(out, method);
         deprecated(out, operation);
         let open = format!("public fun {method}Async(");
         let close = format!("): CompletableFuture<{response}> =");
@@ -178,12 +104,9 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     followed(out, context, command, &parameters, &given_all);
 }
 
-/// Creates the comment on the form of a method for Java.
-pub fn for_java(method: &str) -> Docs<'static> {
-    Docs::line([
-        format!("[{method}]，供 Java 使用。"),
-        format!("[{method}] for Java."),
-    ])
+/// Writes the comment on the form of a method for Java.
+pub fn for_java(out: &mut Source, method: &str) {
+    out.template("for_java", &[("method", method)]);
 }
 
 /// Writes a method for each kind of report that a command sets off, and its form for Java.
@@ -248,7 +171,7 @@ fn followed(
                 });
             });
         }
-        out.documented(&for_java(&name));
+        for_java(out, &name);
         deprecated(out, operation);
         function(
             out,

@@ -19,10 +19,7 @@ pub fn robots(
     ranges: &[(String, &CodeRange)],
     unknown: &str,
 ) {
-    out.documented(&Docs::said([
-        "`Robot` 的 Java 形式：处理程序返回 future。用 `Refusal.toFuture` 拒绝指令。",
-        "`Robot` for Java: handlers return futures. `Refusal.toFuture` refuses a command.",
-    ]));
+    out.template("async_robot", &[]);
     let handlers = parts(groups, "AsyncHandlers", has_commands);
     out.block(heading("public interface AsyncRobot", &handlers), |out| {
         for name in ranges.iter().map(|it| &*it.0).chain([unknown]) {
@@ -33,11 +30,11 @@ pub fn robots(
             out.line("    throw context.unknown()");
         }
     });
-    out.documented(&for_java("PartialRobot"));
+    for_java(out, "PartialRobot");
     let partial = parts(groups, "AsyncPartial", has_commands);
     let supers: Vec<String> = [vec!["AsyncRobot".to_owned()], partial].concat();
     out.line(heading("public interface PartialAsyncRobot", &supers));
-    out.documented(&for_java("Robot.service"));
+    for_java(out, "Robot.service");
     out.enclose("public fun AsyncRobot.service(): Service =", "", |out| {
         out.line("Service()");
         for group in groups.iter().filter(|it| has_commands(it)) {
@@ -57,7 +54,7 @@ pub fn part(out: &mut Source, group: &Group<'_, '_>) {
         ["AsyncHandlers", "AsyncPartial", "Handlers"].map(|it| part_name(group, it));
     part_of(out, group, "AsyncRobot", &name, |out| {
         for command in &group.commands {
-            out.documented(&for_java(&format!("{of}.{}", command.method)));
+            for_java(out, &format!("{of}.{}", command.method));
             out.line(signature("public fun", command));
         }
     });

@@ -58,26 +58,18 @@ fn message(
             if let Some(default) = &field.details().default {
                 let default = expressions.held(field, &Value::from(default));
                 let default = expr::expression(&default, &field.ty);
-                let (property, ty) = (&field.name, field_type(context, field));
-                out.documented(&Docs::line([
-                    "同上；没有时为默认值。",
-                    "The same, or the default if it is absent.",
-                ]));
-                out.line(format!(
-                    "public val {property}OrDefault: {ty} get() = {property} ?: {default}"
-                ));
+                let ty = field_type(context, field);
+                out.template(
+                    "or_default",
+                    &[
+                        ("property", &field.name),
+                        ("ty", &ty),
+                        ("default", &default),
+                    ],
+                );
             }
         }
-        out.blank();
-        out.line(format!(
-            "override val messageType: MessageType<{name}> get() = {name}"
-        ));
-        out.documented(&Docs::line([
-            "以此消息的内容为起点的构造器。",
-            "A builder that starts with the content of this message.",
-        ]));
-        out.line("public fun toBuilder(): Builder = Builder(this)");
-        out.blank();
+        out.template("message_type", &[("name", name)]);
         builder(out, context, name, fields);
         out.blank();
         companion(out, context, item, fields);
@@ -124,10 +116,7 @@ fn property(out: &mut Source, context: &Context<'_>, field: &Spelled<'_, Field>)
 }
 
 fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelled<'_, Field>]) {
-    out.docs(&Docs::line([
-        format!("逐项设置 [{name}] 的字段。"),
-        format!("Collects the fields of a [{name}]."),
-    ]));
+    out.template("builder", &[("name", name)]);
     let head = "public class Builder internal constructor(from: ";
     let supers = [format!("MessageBuilder<{name}, Builder>({name}, from)")];
     let head = heading(out, &format!("{head}{name}?)"), &supers);
@@ -164,8 +153,7 @@ fn companion(
     if example != "{}" {
         arguments.push(literal(&example));
     }
-    let docs = Docs::line(["此类型。", "The type."]);
-    out.docs(&docs);
+    out.template("type", &[]);
     let joined = arguments.join(", ");
     let head = format!("public companion object : MessageType<{name}>(");
     let head = if out.has_room([&head, &joined, ") {"]) {
@@ -196,25 +184,7 @@ fn companion(
             out.line(format!("private val {} = {made}", constant(context, field)));
         }
         conditions(out, context, fields);
-        out.documented(&Docs::line([
-            "一个空的构造器，供 Java 使用。",
-            "An empty builder, for Java.",
-        ]));
-        out.line("@JvmStatic");
-        out.line("public fun builder(): Builder = Builder(null)");
-        out.documented(&Docs::line([
-            "用 `build` 设置字段，构造消息。",
-            "Builds a message with the fields that `build` sets.",
-        ]));
-        out.line("@JvmSynthetic");
-        out.line(format!(
-            "public inline operator fun invoke(build: Builder.() -> Unit): {name} ="
-        ));
-        out.line("    builder().apply(build).build()");
-        out.blank();
-        out.line(format!(
-            "override fun create(content: Content): {name} = {name}(content)"
-        ));
+        out.template("build", &[("name", name)]);
     });
 }
 
@@ -264,36 +234,28 @@ fn enumeration(
     let head = format!("public class {name} private constructor(wire: {wire})");
     let head = heading(out, &head, &supers);
     out.block(head, |out| {
-        out.line(format!("override val enumType: EnumType<{name}> get() = {name}"));
+        out.line(format!(
+            "override val enumType: EnumType<{name}> get() = {name}"
+        ));
         if is_state {
-            out.blank();
-            out.line(format!(
-                "\
-override val isFinal: Boolean get() = steps.isFinal(wire)
-
-override val isError: Boolean get() = steps.isError(wire)
-
-override fun mayFollow(previous: State): Boolean = previous is {name} && steps.mayFollow(previous.wire, wire)"
-            ));
+            out.template("state", &[("name", name)]);
         }
-        out.documented(&Docs::line(["规范中的全部取值。", "The values of the spec."]));
+        out.template("values", &[]);
         let head = format!("public companion object : {base}EnumType<{name}>({arguments})");
         out.block(head, |out| {
             for value in values {
                 out.documented(&facts::value_docs(value));
-                out.line("@JvmField");
-                let (value, wire) = (&value.name, scalar(&value.wire));
-                out.line(format!("public val {value}: {name} = named({wire}, \"{value}\")"));
+                let wire = scalar(&value.wire);
+                out.template(
+                    "value",
+                    &[("value", &value.name), ("name", name), ("wire", &wire)],
+                );
             }
             if is_state {
                 out.blank();
                 steps(out, shape, values);
             }
-            out.documented(&Docs::said(["`wire` 对应的取值；规范中没有的值原样保留。", "The value for `wire`. A value that is not in the spec is kept unchanged."]));
-            out.line("@JvmStatic");
-            out.line(format!("override fun of(wire: {wire}): {name} = super.of(wire)"));
-            out.blank();
-            out.line(format!("override fun create(wire: {wire}): {name} = {name}(wire)"));
+            out.template("of_wire", &[("name", name), ("wire", wire)]);
         });
     });
 }
@@ -343,16 +305,11 @@ fn choice(
         facts::variant_end(&mut docs, variant);
     }
     out.docs(&docs);
-    out.block(format!("public sealed interface {name}"), |out| {
-        out.docs(&Docs::line(["全部形式。", "Its forms."]));
-        let head = format!(
-            "public companion object : ChoiceType<{name}>({})",
-            literal(name)
-        );
-        out.block(head, |out| {
-            let forms: Vec<&str> = variants.iter().map(|it| context.name_of(&it.ty)).collect();
-            let open = "override val forms: List<MessageType<*>> get() = listOf(";
-            out.list(open, &forms, ")");
-        });
+    out.template("choice", &[("name", name)]);
+    out.deeper(2, |out| {
+        let forms: Vec<&str> = variants.iter().map(|it| context.name_of(&it.ty)).collect();
+        let open = "override val forms: List<MessageType<*>> get() = listOf(";
+        out.list(open, &forms, ")");
     });
+    out.line("    }\n}");
 }

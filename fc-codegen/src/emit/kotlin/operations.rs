@@ -14,12 +14,9 @@ use fc_spec::model::{AcceptedIn, Cadence, Exchange, Kind, Operation, StructRef};
 /// Generates `Operations.kt`.
 pub fn operations_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = context.source();
-    out.docs(&Docs::said([
-        "每条指令和每个上报。",
-        "Every command and every report.",
-    ]));
     let parts = parts(groups, "Operations", has_calls);
-    out.line(heading("public object Operations", &parts));
+    let heading = heading("public object Operations", &parts);
+    out.template("operations", &[("heading", &heading)]);
     out
 }
 
@@ -48,10 +45,7 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 out.enclose(&head, "", |out| out.line(getter));
             }
         }
-        out.documented(&Docs::line([
-            "这些常量供 Java 使用。",
-            "The same as constants, for Java.",
-        ]));
+        out.template("constants", &[]);
         out.block("public companion object", |out| {
             for command in &group.commands {
                 command_value(out, context, command);

@@ -190,81 +190,52 @@ fn envelope(
         out.line(format!(
             "override val messageType: MessageType<{name}> get() = {name}"
         ));
-        out.documented(&Docs::line(["此类型。", "The type."]));
-        out.block(
-            format!("public companion object : MessageType<{name}>(\"{name}\")"),
-            |out| {
-                for field in fields {
-                    let how = if field.optional {
-                        "optional"
-                    } else {
-                        "required"
-                    };
-                    let (wire, codec) = (literal(&field.wire), plain_codec(&field.ty));
-                    let role = field.role.name().to_uppercase();
-                    let constant = field.of.name.to_uppercase();
-                    out.line(format!(
-                        "private val {constant} = {how}({wire}, {codec}).role(EnvelopeRole.{role})"
-                    ));
-                }
-                out.blank();
+        out.blank();
+        out.template("envelope", &[("name", name)]);
+        out.enclose("", "}", |out| {
+            for field in fields {
+                let how = if field.optional {
+                    "optional"
+                } else {
+                    "required"
+                };
+                let (wire, codec) = (literal(&field.wire), plain_codec(&field.ty));
+                let role = field.role.name().to_uppercase();
+                let constant = field.of.name.to_uppercase();
                 out.line(format!(
-                    "override fun create(content: Content): {name} = {name}(content)"
+                    "private val {constant} = {how}({wire}, {codec}).role(EnvelopeRole.{role})"
                 ));
-            },
-        );
+            }
+            out.blank();
+            out.line(format!(
+                "override fun create(content: Content): {name} = {name}(content)"
+            ));
+        });
     });
 }
 
 fn results(out: &mut Source, context: &Context<'_>) {
     out.docs(&about::results(context));
-    out.block(
-        "public class ResultCode private constructor(wire: Long) : IntValue(wire)",
-        |out| {
-            out.line("override val enumType: EnumType<ResultCode> get() = ResultCode");
-            out.documented(&Docs::line([
-                "随结果码发送的文字。",
-                "The text sent with the code.",
-            ]));
-            out.line("public val text: String get() = texts[wire] ?: \"\"");
-            out.documented(&Docs::line([
-                "以此结果码拒绝。",
-                "The refusal with this code.",
-            ]));
-            out.line("public fun refusal(): Refusal = Refusal(wire, text)");
-            out.documented(&Docs::line([
-                "规范中的全部结果码。",
-                "The codes of the spec.",
-            ]));
-            out.block(
-                "public companion object : IntEnumType<ResultCode>(\"ResultCode\", Types.I64)",
-                |out| {
-                    let results = &context.package.results;
-                    for result in results {
-                        out.documented(&about::result(result.of));
-                        out.line("@JvmField");
-                        let name = &result.name;
-                        out.line(format!(
-                            "public val {name}: ResultCode = named({}, \"{name}\")",
-                            result.code
-                        ));
-                    }
-                    let texts = results.iter();
-                    let texts: Vec<String> = texts
-                        .map(|it| format!("{}L to {}", it.code, literal(&it.text.zh)))
-                        .collect();
-                    out.blank();
-                    out.lines("private val texts: Map<Long, String> = mapOf(", &texts, ")");
-                    out.documented(&Docs::line([
-                        "`wire` 对应的结果码。",
-                        "The code for `wire`.",
-                    ]));
-                    out.line("@JvmStatic");
-                    out.line("override fun of(wire: Long): ResultCode = super.of(wire)");
-                    out.blank();
-                    out.line("override fun create(wire: Long): ResultCode = ResultCode(wire)");
-                },
+    out.template("result_code", &[]);
+    out.deeper(2, |out| {
+        let results = &context.package.results;
+        for (index, result) in results.iter().enumerate() {
+            if index > 0 {
+                out.blank();
+            }
+            out.docs(&about::result(result.of));
+            let (value, wire) = (&result.name, result.code.to_string());
+            let name = "ResultCode";
+            out.template(
+                "value",
+                &[("value", value), ("name", name), ("wire", &wire)],
             );
-        },
-    );
+        }
+        let texts = results.iter();
+        let texts = texts.map(|it| format!("{}L to {}", it.code, literal(&it.text.zh)));
+        out.blank();
+        let open = "private val texts: Map<Long, String> = mapOf(";
+        out.lines(open, &texts.collect::<Vec<_>>(), ")");
+    });
+    out.template("result_of", &[]);
 }

@@ -1,6 +1,5 @@
 //! The robot's side: complete, partial and example robots, and typed reports and streams.
 
-use super::client::for_java;
 use super::group::{heading, part_name, part_of, parts, wrapper};
 use super::java;
 use super::streams::{self, SERVER, SERVER_DOCS};
@@ -39,21 +38,10 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
         }
         raw(out, &unknown, &about::unknown());
     });
-    out.documented(&Docs::said([
-        "实现了一部分指令的机器人：没有写的指令以“未实现”拒绝。",
-        "A robot with some of the commands. It refuses the others as not implemented.",
-    ]));
-    let partial = parts(groups, "Partial", has_commands);
-    out.line(heading(
-        "public interface PartialRobot",
-        &robot_and(partial.into_iter()),
-    ));
-    out.blank();
-    example(&mut out, groups);
-    out.documented(&Docs::said([
-        "由此机器人处理规范中的指令，供 [Server.bind] 使用。",
-        "A service that handles the commands with this robot, for [Server.bind].",
-    ]));
+    let partial = robot_and(parts(groups, "Partial", has_commands).into_iter());
+    let partial = heading("public interface PartialRobot", &partial);
+    let values = [("partial", &*partial), ("example", &example(groups))];
+    out.template("robots", &values);
     out.enclose("public fun Robot.service(): Service =", "", |out| {
         out.line("Service()");
         for group in groups.iter().filter(|it| has_commands(it)) {
@@ -70,7 +58,6 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
         ));
     });
     java::robots(&mut out, groups, &ranges, &unknown);
-    out.blank();
     reporter(&mut out, groups);
     streams::for_robot(&mut out, groups);
     out
@@ -160,39 +147,15 @@ fn raw(out: &mut Source, name: &str, docs: &Docs<'_>) {
     out.line("    throw context.unknown()");
 }
 
-fn example(out: &mut Source, groups: &[Group<'_, '_>]) {
-    let mut docs = Docs::said([
-        "用规范中的示例响应指令，只用于演示和测试；自己的机器人从 `PartialRobot` 开始。",
-        "Responds with the examples of the spec, only for demos and tests. Your own robot starts with `PartialRobot`.",
-    ]);
-    docs.both([
-        "它不执行运动指令和影响不详的指令，以“未实现”拒绝；`pretendMotion` 为真时假装成功。",
-        "It does not execute commands that move the robot or have an unknown effect, and refuses them as not implemented. With \
-         `pretendMotion`, it pretends success.",
-    ]);
-    out.docs(&docs);
+/// Returns the head of the robot that responds with the spec's examples.
+fn example(groups: &[Group<'_, '_>]) -> String {
     let groups = groups.iter().filter(|it| has_commands(it));
     let answers = groups.map(|group| {
         let [handlers, example] = ["Handlers", "Example"].map(|whole| part_name(group, whole));
         format!("{handlers} by {example}(pretendMotion)")
     });
-    out.line(heading(
-        "public open class ExampleRobot(pretendMotion: Boolean = false)",
-        &robot_and(answers),
-    ));
-    out.blank();
-    out.docs(&Docs::line([
-        "各分组的示例共有的部分。",
-        "The common part of the examples of all groups.",
-    ]));
-    out.line(
-        "\
-internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
-    /** The response to a command that may move the robot. */
-    protected fun <A : Message> pretended(context: Context, response: MessageType<A>): A =
-        if (pretendMotion) response.example() else throw context.notImplemented()
-}",
-    );
+    let head = "public open class ExampleRobot(pretendMotion: Boolean = false)";
+    heading(head, &robot_and(answers))
 }
 
 /// Writes the class that responds to a group's commands with the spec's examples.
@@ -230,10 +193,7 @@ fn signature(head: &str, command: &Call<'_>) -> String {
 
 fn reporter(out: &mut Source, groups: &[Group<'_, '_>]) {
     let parts = parts(groups, "Reporter", |it| !it.reports.is_empty());
-    out.docs(&Docs::said([
-        "发送上报：每种上报一个方法，等到每个 app 应答，或者不会再应答。",
-        "Pushes reports: one method per report, which waits for the outcome at each app.",
-    ]));
+    out.template("reporter", &[]);
     wrapper(out, "Reporter", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
 }
@@ -252,16 +212,7 @@ fn reports(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
                 docs.raw("@throws fc.runtime.PushError if it could not be queued");
                 let (method, ty) = (report.method, &report.request.ty.name);
                 out.documented(&docs);
-                out.line("@JvmSynthetic");
-                out.line(format!("public suspend fun {method}(audience: Audience, report: {ty}): List<Acknowledgement> ="));
-                out.line(format!(
-                    "    server.push(audience, Operations.{method}, report)"
-                ));
-                out.documented(&for_java(method));
-                out.line(format!("public fun {method}Async(audience: Audience, report: {ty}): CompletableFuture<List<Acknowledgement>> ="));
-                out.line(format!(
-                    "    server.pushAsync(audience, Operations.{method}, report)"
-                ));
+                out.template("push", &[("method", method), ("ty", ty)]);
             }
         },
     );

@@ -1,6 +1,5 @@
 //! The streams of the data port on both sides.
 
-use super::client::for_java;
 use super::group::{heading, part_name, part_of, parts, wrapper};
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -16,10 +15,7 @@ pub fn for_app(out: &mut Source, groups: &[Group<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.documented(&Docs::said([
-        "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
-        "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
-    ]));
+    out.template("app_streams", &[]);
     wrapper(out, "Streams", DATA, DATA_DOCS, &parts);
     out.line(heading(")", &parts));
 }
@@ -30,7 +26,7 @@ pub fn for_robot(out: &mut Source, groups: &[Group<'_, '_>]) {
     if parts.is_empty() {
         return;
     }
-    out.documented(&Docs::said(["机器人发送的数据流：每个数据流一个方法，返回收下它的数据连接数。", "Sends the streams of the robot: one method per stream, which returns the number of data connections that took it."]));
+    out.template("robot_streams", &[]);
     wrapper(out, "Streamer", SERVER, SERVER_DOCS, &parts);
     out.line(heading(")", &parts));
 }
@@ -88,15 +84,7 @@ fn app(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation>)
         out.line(format!("{head} data.subscribe({code}{more})"));
     } else {
         let ty = carried.unwrap_or("ByteArray");
-        out.line("@JvmSynthetic");
-        out.line(format!(
-            "public suspend fun send{name}(id: Long, content: {ty}): Unit = data.send({code}, id, content)"
-        ));
-        out.documented(&for_java(&format!("send{name}")));
-        out.line(format!(
-            "public fun send{name}Async(id: Long, content: {ty}): CompletableFuture<Void?> ="
-        ));
-        out.line(format!("    data.sendAsync({code}, id, content)"));
+        out.template("send", &[("name", &name), ("ty", ty), ("code", code)]);
     }
 }
 
@@ -104,18 +92,8 @@ fn robot(out: &mut Source, context: &Context<'_>, stream: &Spelled<'_, Operation
     let (name, code) = (super::method_of(stream), &stream.code.spelling);
     let ty = context.content(stream).unwrap_or("ByteArray");
     out.documented(&facts::method_docs(context, stream.of, |_| ()));
-    out.line("@JvmSynthetic");
-    out.line(format!(
-        "public suspend fun send{name}(audience: Audience, id: Long, content: {ty}): Int ="
-    ));
-    out.line(format!(
-        "    server.sendStream(audience, {code}, id, content)"
-    ));
-    out.documented(&for_java(&format!("send{name}")));
-    out.line(format!(
-        "public fun send{name}Async(audience: Audience, id: Long, content: {ty}): CompletableFuture<Int> ="
-    ));
-    out.line(format!(
-        "    server.sendStreamAsync(audience, {code}, id, content)"
-    ));
+    out.template(
+        "send_of_robot",
+        &[("name", &name), ("ty", ty), ("code", code)],
+    );
 }

@@ -19,6 +19,7 @@ pub static STYLE: Style = Style {
     comment: Comment {
         open: "/**",
         mark: " *",
+        inner_mark: " *",
         close: " */",
         begins_at_once: false,
         prose,
@@ -28,6 +29,7 @@ pub static STYLE: Style = Style {
     link: |name| format!("[{name}]"),
     integer: grouped,
     redacted: "Never shown by `toString`.",
+    templates: include_str!("templates.kt.in"),
 };
 
 fn prose(line: &str) -> Cow<'_, str> {

@@ -7,7 +7,6 @@ use super::source::{Code, Python, assign_text};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
-use crate::package::docs::Docs;
 use crate::package::expr::Expressions;
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
@@ -92,10 +91,7 @@ fn structure<'m>(
             used.library("typing", "ClassVar");
             let ty = ty.strip_suffix(" | rt.Unknown[int]").unwrap_or(ty);
             out.line(format!("{constant}: ClassVar[{ty}] = {value}"));
-            out.docstring(&Docs::line([
-                format!("没有 `{name}` 时的取值。"),
-                format!("The default of `{name}`."),
-            ]));
+            out.template("default", &[("name", name)]);
             out.blank();
         }
         for field in fields {
@@ -130,13 +126,7 @@ fn structure<'m>(
             out.blank();
             out.line("@property");
             out.suite(&format!("def {accessor}(self) -> {ty}"), |out| {
-                out.docstring(&Docs::line([
-                    format!("`{name}`，没有时为默认值。"),
-                    format!("`{name}`, or its default."),
-                ]));
-                out.line(format!(
-                    "return self.{constant} if self.{name} is None else self.{name}"
-                ));
+                out.template("or_default", &[("name", name), ("constant", constant)]);
             });
         }
     });
@@ -144,11 +134,7 @@ fn structure<'m>(
 
 /// Writes the field that keeps unknown keys.
 pub fn extra(out: &mut Source) {
-    out.line("extra: rt.Extra = field(default_factory=rt.Extra)");
-    out.docstring(&Docs::line([
-        "其他键，原样保留。",
-        "Other keys, kept unchanged.",
-    ]));
+    out.template("extra", &[]);
 }
 
 /// Returns the type of a field. An id field has its id type, if one exists.

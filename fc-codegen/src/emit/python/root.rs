@@ -20,11 +20,11 @@ fn hidden(out: &mut Source, all: impl FnOnce(&mut Source)) {
     out.suite("if not TYPE_CHECKING", all);
 }
 
-/// Creates the head of a file that re-exports names.
-fn head(context: &Context<'_>, docs: &Docs<'_>) -> Source {
+/// Creates the head of a file that re-exports names. The template is its docstring.
+fn head(context: &Context<'_>, template: &str) -> Source {
     let mut out = context.source();
-    out.docstring(docs);
-    out.line("\nfrom __future__ import annotations\n\nfrom typing import TYPE_CHECKING");
+    out.template(template, &[]);
+    out.template("typing", &[]);
     out.blank();
     out
 }
@@ -35,7 +35,10 @@ pub fn root_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut docs = Docs::titled(&model.protocol.title);
     docs.text(&model.protocol.about);
-    let mut out = head(context, &docs);
+    let mut out = context.source();
+    out.docstring(&docs);
+    out.template("typing", &[]);
+    out.blank();
     let name = protocol::name(context);
     let streams = |name| (!package.streams.is_empty()).then_some(name);
     let client = ["AnyReport", "Client"]
@@ -78,13 +81,7 @@ pub fn root_file(context: &Context<'_>) -> String {
 
 /// Generates `groups/__init__.py`.
 pub fn groups(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
-    let mut out = head(
-        context,
-        &Docs::said([
-            "各分组，每组一个模块：报文类型、接口，以及 app 端和机器人端的方法。",
-            "The groups, one module each: message types, operations, and the methods of both sides.",
-        ]),
-    );
+    let mut out = head(context, "groups");
     let mut modules: Vec<&str> = plan.files().map(|group| group.name).collect();
     if !context.package.ids.is_empty() {
         modules.push(plan.ids());
@@ -104,10 +101,7 @@ pub fn groups(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String {
 
 /// Generates `messages.py`.
 pub fn messages(context: &Context<'_>) -> String {
-    let mut out = head(
-        context,
-        &Docs::said(["所有分组的报文类型。", "The message types of all groups."]),
-    );
+    let mut out = head(context, "messages");
     out.line("from . import groups, operations\nfrom .groups import *");
     out.blank();
     let is_message = "if name not in operations.__all__";
@@ -121,13 +115,7 @@ pub fn messages(context: &Context<'_>) -> String {
 
 /// Generates `operations.py`.
 pub fn operations(context: &Context<'_>) -> String {
-    let mut out = head(
-        context,
-        &Docs::said([
-            "所有分组的接口，以及规范中的说明。",
-            "The operations of all groups, with their description in the spec.",
-        ]),
-    );
+    let mut out = head(context, "operations");
     out.line("import fc_runtime as rt\n\nfrom . import groups\nfrom .groups import *");
     out.blank();
     let is_operation = "if isinstance(getattr(groups, name), rt.Command | rt.Report | rt.Stream)";
@@ -142,14 +130,7 @@ pub fn operations(context: &Context<'_>) -> String {
 /// Generates the file of the id types.
 pub fn ids(context: &Context<'_>) -> String {
     let mut out = context.source();
-    out.docstring(&Docs::said([
-        "各种实体的 ID，每种一个类型，类型检查器不会让它们互相混用。发送的形式与其中的值相同。",
-        "The IDs of entities, with one type per entity, so that a type checker keeps them apart. An ID is sent as the value in it.",
-    ]));
-    out.blank();
-    out.line("from __future__ import annotations");
-    out.blank();
-    out.line("from typing import NewType");
+    out.template("ids", &[]);
     let ids = context.package.ids.iter();
     let ids = ids.filter_map(|id| Some((id, context.model().id_type(id)?)));
     if ids.clone().any(|(_, held)| *held != Type::String) {
@@ -172,21 +153,7 @@ pub fn ids(context: &Context<'_>) -> String {
 pub fn call(context: &Context<'_>, package: &str) -> String {
     let name = protocol::name(context);
     let mut out = context.source();
-    out.docstring(&Docs::line([
-        format!("命令行工具：`python -m {package}.call --help`。"),
-        "A command-line tool.".to_owned(),
-    ]));
-    out.line(format!(
-        "
-from __future__ import annotations
-
-from fc_runtime.tool import main
-
-from .protocol import {name}
-
-if __name__ == \"__main__\":
-    raise SystemExit(main({name}))"
-    ));
+    out.template("call", &[("package", package), ("name", &name)]);
     out.finish()
 }
 

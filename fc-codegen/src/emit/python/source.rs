@@ -15,6 +15,7 @@ pub static PYTHON: Style = Style {
     comment: Comment {
         open: "\"\"\"",
         mark: "",
+        inner_mark: "",
         close: "\"\"\"",
         begins_at_once: true,
         prose: |line| Cow::Borrowed(line),
@@ -24,6 +25,7 @@ pub static PYTHON: Style = Style {
     link: |name| format!("`{name}`"),
     integer: crate::package::digits::grouped,
     redacted: "Never shown by `repr()`.",
+    templates: include_str!("templates.py.in"),
 };
 
 /// The columns of a docstring's first line that its quotes take.

@@ -74,8 +74,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         &["&'a self".to_owned(), format!("request: &'a {request}")],
         &format!(") -> fc_runtime::Call<'a, crate::{protocol}, {request}> {{"),
     );
-    out.line("    self.connection.call(request)");
-    out.line("}");
+    out.template("call", &[]);
 }
 
 fn blocking_call(out: &mut Source, command: &Call<'_>) {
@@ -93,8 +92,7 @@ fn blocking_call(out: &mut Source, command: &Call<'_>) {
         &["&self".to_owned(), request],
         &format!(") -> Result<{response}, fc_runtime::CallError> {{"),
     );
-    out.line("    self.connection.call(request)");
-    out.line("}");
+    out.template("call", &[]);
 }
 
 fn deprecation(out: &mut Source, command: &Call<'_>) {

@@ -39,23 +39,7 @@ const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
 pub fn descriptors_file(context: &Context<'_>) -> String {
     let model = context.model();
     let mut out = context.source();
-    let mut docs = Docs::said([
-        "每个接口的描述数据，供不依赖具体类型的工具使用。",
-        "Every operation as data, for tools that do not use its types.",
-    ]);
-    docs.both([
-        "文件末尾的宏对每个接口展开一次。用这些宏的测试、模拟器和工具，新增指令时不必改动。",
-        "The macros at the end expand once per operation. Tests, mocks and tools that use them cover a new \
-         command without a change.",
-    ]);
-    docs.paragraph(
-        "Tables are in the order of the spec: by group, then by position in the file of the group.",
-    );
-    out.inner_docs(&docs);
-    out.blank();
-
-    out.import("fc_runtime", &["OperationInfo"]);
-
+    out.template("descriptors", &[]);
     for (name, kind, zh, en) in TABLES {
         let rows = model.operations.iter();
         let rows = rows.filter(|operation| kind.is_none_or(|kind| kind == operation.kind()));

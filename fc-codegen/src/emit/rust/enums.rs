@@ -4,7 +4,6 @@ use super::context::Context;
 use super::literal::{literal, number};
 use super::source::Source;
 use crate::package::about;
-use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::{Item, Spelled};
 use crate::package::name::free;
@@ -46,13 +45,13 @@ pub fn enumeration(
         if !shape.closed {
             let taken = |name: &str| values.iter().any(|value| value.name == name);
             let other = free(&["Unknown", "Other", "Unlisted"], taken);
-            out.blank();
-            out.docs(&Docs::line([
-                "其他值，原样保留。",
-                "Any other value, kept unchanged.",
-            ]));
-            out.line("#[fc(other)]");
-            out.line(format!("{other}({rust}),"));
+            let values = [
+                ("zh", "值"),
+                ("en", "value"),
+                ("other", &*other),
+                ("repr", rust),
+            ];
+            out.template("other", &values);
         }
     });
 }

@@ -173,12 +173,7 @@ fn structure<'m>(
             });
             out.blank();
         }
-        out.docs(&Docs::line([
-            "其他键，原样保留。",
-            "Other keys, kept unchanged.",
-        ]));
-        out.line("#[fc(extra)]");
-        out.line(format!("pub {}: Extra,", extra_name(fields)));
+        out.template("extra", &[("extra", &extra_name(fields))]);
     });
 }
 

@@ -69,9 +69,7 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
     out.blank();
     let wire = &WireFacts::build(context);
     out.block(format!("impl Protocol for {name}"), |out| {
-        out.line("type Header = FrameHeader;");
-        out.line("type Request = RequestEnvelope;");
-        out.line("type Response = ResponseEnvelope;");
+        out.template("protocol_impl", &[]);
         out.blank();
         constants(out, wire);
         out.blank();
@@ -86,10 +84,7 @@ fn protocol(out: &mut Source, context: &Context<'_>) {
         });
         out.blank();
         defaults(out, wire);
-        out.blank();
-        out.block("fn operations() -> &'static [OperationInfo]", |out| {
-            out.line("OPERATIONS");
-        });
+        out.template("operations", &[]);
     });
 }
 
@@ -259,40 +254,22 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.line(format!("#[fc(value = {})]", result.code));
             out.line(format!("{},", result.name));
         }
-        out.blank();
-        out.docs(&Docs::line([
-            "其他结果码，原样保留。",
-            "Any other code, kept unchanged.",
-        ]));
-        out.line("#[fc(other)]");
-        out.line(format!("{other}(i64),"));
+        let values = [
+            ("zh", "结果码"),
+            ("en", "code"),
+            ("other", &*other),
+            ("repr", "i64"),
+        ];
+        out.template("other", &values);
     });
-    out.blank();
-    out.block("impl ResultCode", |out| {
-        out.docs(&Docs::line([
-            "随结果码发送的文字。",
-            "The text sent with the code.",
-        ]));
-        out.line("#[must_use]");
-        out.block("pub const fn text(self) -> &'static str", |out| {
-            out.block("match self", |out| {
-                for result in results {
-                    let text = literal(&result.text.zh);
-                    out.line(format!("Self::{} => {text},", result.name));
-                }
-                out.line(format!("Self::{other}(_) => \"\","));
-            });
-        });
+    out.template("text_of_result", &[]);
+    out.deeper(3, |out| {
+        for result in results {
+            let text = literal(&result.text.zh);
+            out.line(format!("Self::{} => {text},", result.name));
+        }
     });
-    out.blank();
-    out.line(
-        "\
-impl From<ResultCode> for Refusal {
-    fn from(code: ResultCode) -> Self {
-        Self::new(code.wire(), code.text())
-    }
-}",
-    );
+    out.template("refusal", &[("other", &other)]);
 }
 
 /// Writes the codes of the streams, if there are any. A stream of bytes has no type that could hold its code.
@@ -301,11 +278,9 @@ fn streams(out: &mut Source, context: &Context<'_>) {
     if streams.is_empty() {
         return;
     }
-    out.documented(&Docs::said(["数据流的功能码。", "Codes of streams."]));
+    out.template("stream_code", &[]);
     let taken = |name: &str| streams.iter().any(|stream| stream.name == name);
     let other = free(&["Unknown", "Other", "Unlisted"], taken);
-    out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
-    out.line("#[fc(repr = u16)]");
     out.block("pub enum StreamCode", |out| {
         for stream in streams {
             let mut docs = facts::operation_docs(stream);
@@ -315,13 +290,13 @@ fn streams(out: &mut Source, context: &Context<'_>) {
             out.line(format!("#[fc(value = {})]", stream.code.spelling));
             out.line(format!("{},", stream.name));
         }
-        out.blank();
-        out.docs(&Docs::line([
-            "其他功能码，原样保留。",
-            "Any other code, kept unchanged.",
-        ]));
-        out.line("#[fc(other)]");
-        out.line(format!("{other}(u16),"));
+        let values = [
+            ("zh", "功能码"),
+            ("en", "code"),
+            ("other", &*other),
+            ("repr", "u16"),
+        ];
+        out.template("other", &values);
     });
 }
 

@@ -5,6 +5,7 @@ use super::source::Source;
 use super::streams;
 use crate::package::about;
 use crate::package::docs::Docs;
+use crate::package::source::join;
 
 /// Lints that names in the spec can trigger, each with the reason.
 const ALLOWED: &[(&str, &str)] = &[
@@ -58,43 +59,13 @@ pub fn root_file(context: &Context<'_>) -> String {
             ")]",
         );
     }
-    out.blank();
     let (app, robot) = stubs(context);
-    out.line(
-        "\
-#[cfg(feature = \"blocking\")]
-pub mod blocking;
-#[cfg(feature = \"client\")]
-mod client;
-mod protocol;
-#[cfg(feature = \"server\")]
-mod robot;
-
-pub mod descriptors;",
-    );
-    if !context.package.ids.is_empty() {
-        out.line("pub mod ids;");
-    }
-    out.line(
-        "\
-pub mod messages;
-pub mod prelude;
-pub mod tables;
-",
-    );
-    out.blank();
-    out.line("#[cfg(feature = \"client\")]");
-    out.filled("pub use client::{", &app, "};");
-    out.docs(&Docs::written([
-        "运行库：连接的配置、错误、限制、帧。依赖本 crate 即可，不必另外依赖运行库。",
-        "The runtime: configuration, errors, limits, frames. A program needs no other dependency than this crate.",
-    ]));
-    out.line("pub use fc_runtime as runtime;");
-    out.docs(&Docs::written([
-        "本 crate 的版本。`fcproto package` 打出的包还带有规范的发布号或摘要。",
-        "The version of this crate. `fcproto package` adds the release of the spec or its fingerprint.",
-    ]));
-    out.line("pub const VERSION: &str = env!(\"CARGO_PKG_VERSION\");");
+    let ids = if context.package.ids.is_empty() {
+        ""
+    } else {
+        "pub mod ids;"
+    };
+    out.template("modules", &[("ids", ids), ("client", &join(&app))]);
     every_id(&mut out, "", context);
     // Only types: a group can have the name of a crate, which a glob import must not hide.
     every_type(&mut out, "", context);
@@ -194,15 +165,7 @@ const FOR_BOTH: &[&str] = &[
 /// Generates `prelude.rs`.
 pub fn prelude(context: &Context<'_>, krate: &str) -> String {
     let mut out = context.source();
-    let zh = format!("app 和机器人要用到的名称，一行引入：`use {krate}::prelude::*;`");
-    let en = format!("The names for an app and a robot, in one line: `use {krate}::prelude::*;`");
-    let mut docs = Docs::said([zh, en]);
-    docs.paragraph(
-        "It contains all message types, the stubs, and the related types of the runtime. A name that you \
-         declare or import explicitly takes precedence over these.",
-    );
-    out.inner_docs(&docs);
-    out.blank();
+    out.head("prelude", &[("krate", krate)]);
     every_id(&mut out, "crate::", context);
     every_type(&mut out, "crate::", context);
     out.line(format!(
@@ -237,11 +200,7 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
 pub fn messages(context: &Context<'_>) -> String {
     let modules = &context.package.modules;
     let mut out = context.source();
-    out.inner_docs(&Docs::said([
-        "消息类型，每个分组一个模块；所有类型都可以直接从 crate 根部引用。",
-        "Message types, with one module per group. All types are re-exported at the crate root.",
-    ]));
-    out.blank();
+    out.head("messages", &[]);
     for module in modules {
         out.line(format!("pub mod {};", module.name));
     }

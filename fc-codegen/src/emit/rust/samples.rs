@@ -116,26 +116,7 @@ pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
     let taken = |name: &str| context.package.has_type(name);
     let robot = free(&["SampleRobot", "RobotOfTheSamples"], taken);
     let mut out = context.source();
-    out.line(
-        "\
-//! The samples that the documentation shows, compiled and run: every command is called, every
-//! report pushed and taken.
-
-#![allow(deprecated, reason = \"a robot still handles deprecated commands\")]
-#![allow(
-    clippy::approx_constant,
-    clippy::print_stdout,
-    clippy::similar_names,
-    clippy::too_many_lines,
-    clippy::unreadable_literal,
-    clippy::wildcard_imports,
-    missing_docs,
-    unused_imports,
-    reason = \"samples contain the examples of the spec\"
-)]",
-    );
-    out.blank();
-    out.line(format!("use {krate}::*;"));
+    out.template("samples", &[("krate", krate)]);
     let names = ["Audience", "Bytes64", "Context", "Refusal"];
     let names: Vec<&str> = names.into_iter().filter(|name| !taken(name)).collect();
     out.import("fc_runtime", &names);
@@ -176,27 +157,16 @@ fn call(step: &SampleStep<'_, '_>) -> String {
 
 fn test_of_samples(out: &mut Source, robot: &str, run: &SampleRun<'_, '_>) {
     let has_streams = run.has_streams();
-    let data = if has_streams { ".data_port(data)" } else { "" };
+    let [data, data_port] = if has_streams {
+        ["let data = server.data_addr().port();", ".data_port(data)"]
+    } else {
+        [""; 2]
+    };
     out.blank();
     out.line("#[tokio::test]");
     out.block(format!("async fn every_sample_runs() -> {RESULT}"), |out| {
-        out.line(format!(
-            "\
-let host = std::net::Ipv4Addr::LOCALHOST;
-let config = fc_runtime::ServerConfig::new().address(host).command_port(0).data_port(0);
-let server = fc_runtime::Server::bind(config, RobotService::new({robot})).await?;
-let port = server.command_addr().port();"
-        ));
-        if has_streams {
-            out.line("let data = server.data_addr().port();");
-        }
-        out.line(format!(
-            "\
-let handle = server.handle();
-let serving = tokio::spawn(server.run());
-let config = fc_runtime::ClientConfig::new().host(host.to_string()).command_port(port){data};
-let client = Client::connect(config).await?;"
-        ));
+        let values = [("sample_robot", robot), ("data", data), ("data_port", data_port)];
+        out.template("sample_server", &values);
         wait(out, run, Verb::Call);
         if run.has(Verb::Take) {
             out.line("let reporter = Reporter::new(handle.clone());");
@@ -213,10 +183,7 @@ let client = Client::connect(config).await?;"
             wait(out, run, Verb::Send);
             out.line("drop(streams);");
         }
-        out.line("drop(client);");
-        out.line("handle.shutdown(std::time::Duration::from_secs(1)).await;");
-        out.line("serving.await?;");
-        out.line("Ok(())");
+        out.template("sample_end", &[]);
     });
 }
 
@@ -241,8 +208,5 @@ fn select(
         out.line("Ok::<(), Box<dyn std::error::Error>>(())");
     });
     out.line(about);
-    out.enclose("tokio::select! {", "}", |out| {
-        out.line("taken = takers => drop(taken?),");
-        out.line(format!("{given} = {giving} => {given}?,"));
-    });
+    out.template("sample_select", &[("giving", giving), ("given", given)]);
 }

@@ -1,6 +1,6 @@
 //! Layout rules of rustfmt that only Rust needs: attributes, arrays and imports.
 
-use crate::package::docs::{Docs, columns_of, escape_links};
+use crate::package::docs::{columns_of, escape_links};
 use crate::package::source::join;
 use crate::package::style::{Comment, Style};
 use std::borrow::Cow;
@@ -11,31 +11,24 @@ pub use crate::package::source::Source;
 pub static RUST: Style = Style {
     width: 100,
     indent: "    ",
-    comment: OUTER,
+    comment: Comment {
+        open: "",
+        mark: "///",
+        inner_mark: "//!",
+        close: "",
+        begins_at_once: false,
+        prose: escape_links,
+        code: |line| Cow::Borrowed(line),
+        // rustdoc would compile it.
+        fence: |language| match language {
+            "" | "rust" | "rs" => "text",
+            language => language,
+        },
+    },
     link: |name| format!("[`{name}`]"),
     integer: crate::package::digits::grouped,
     redacted: "Never shown by `Debug`.",
-};
-
-/// A comment on the next item.
-const OUTER: Comment = Comment {
-    open: "",
-    mark: "///",
-    close: "",
-    begins_at_once: false,
-    prose: escape_links,
-    code: |line| Cow::Borrowed(line),
-    // rustdoc would compile it.
-    fence: |language| match language {
-        "" | "rust" | "rs" => "text",
-        language => language,
-    },
-};
-
-/// A comment on the enclosing item.
-const INNER: Comment = Comment {
-    mark: "//!",
-    ..OUTER
+    templates: include_str!("templates.rs.in"),
 };
 
 /// The maximum width of several attribute arguments on one line, as in rustfmt.
@@ -48,11 +41,6 @@ const ARRAY_WIDTH: usize = 60;
 const SHORT_ITEM: usize = 10;
 
 impl Source {
-    /// Writes a documentation comment on the enclosing item.
-    pub fn inner_docs(&mut self, docs: &Docs<'_>) {
-        self.comment(&INNER, docs);
-    }
-
     /// Writes `open a, b close` for an array, on one line if it is short.
     ///
     /// Otherwise it puts as many items on a line as fit, or one item per line if any item is long.

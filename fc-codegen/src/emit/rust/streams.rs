@@ -2,7 +2,6 @@
 
 use super::context::Context;
 use super::source::Source;
-use crate::package::docs::Docs;
 use crate::package::facts;
 use fc_spec::model::{Operation, Side};
 
@@ -45,41 +44,8 @@ pub fn imports_of_robot(context: &Context<'_>) -> Vec<&'static str> {
 
 /// Writes `Streams`, in the app's stub.
 pub fn app(out: &mut Source, context: &Context<'_>, protocol: &str) {
-    out.docs(&Docs::written([
-        "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
-        "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
-    ]));
-    out.line(format!(
-        "\
-#[derive(Debug)]
-pub struct Streams {{
-    data: DataConnection<{protocol}>,
-}}"
-    ));
-    out.blank();
-    out.block("impl Streams", |out| {
-        out.docs(&Docs::written([
-            "数据连接上的数据流，见 [`Client::data`]。",
-            "The streams of a data connection; see [`Client::data`].",
-        ]));
-        out.line(format!(
-            "\
-#[must_use]
-pub fn new(data: DataConnection<{protocol}>) -> Self {{
-    Self {{ data }}
-}}"
-        ));
-        out.documented(&Docs::written([
-            "数据连接：连接状态和没有订阅的帧。",
-            "The data connection: its state, and frames without a subscription.",
-        ]));
-        out.line(format!(
-            "\
-#[must_use]
-pub fn data(&self) -> &DataConnection<{protocol}> {{
-    &self.data
-}}"
-        ));
+    out.template("streams", &[("protocol", protocol)]);
+    out.deeper(1, |out| {
         for stream in streams(context) {
             let code = &stream.code.spelling;
             let name = &stream.name;
@@ -101,45 +67,13 @@ pub fn data(&self) -> &DataConnection<{protocol}> {{
             out.line("}");
         }
     });
+    out.line("}");
 }
 
 /// Writes `Streamer`, in the robot's stub.
 pub fn robot(out: &mut Source, context: &Context<'_>, protocol: &str) {
-    out.docs(&Docs::written([
-        "机器人发送的数据流：每个数据流一个方法。",
-        "Sends the robot's streams: one method per stream. Cheap to clone.",
-    ]));
-    out.line(format!(
-        "\
-#[derive(Clone, Debug)]
-pub struct Streamer {{
-    handle: ServerHandle<{protocol}>,
-}}"
-    ));
-    out.blank();
-    out.block("impl Streamer", |out| {
-        out.docs(&Docs::written([
-            "向服务端的各个数据连接发送。",
-            "Sends to the data connections of a server.",
-        ]));
-        out.line(format!(
-            "\
-#[must_use]
-pub fn new(handle: ServerHandle<{protocol}>) -> Self {{
-    Self {{ handle }}
-}}"
-        ));
-        out.documented(&Docs::written([
-            "服务端：还可以接收 app 发来的数据流。",
-            "The server. It also receives the streams of apps.",
-        ]));
-        out.line(format!(
-            "\
-#[must_use]
-pub fn handle(&self) -> &ServerHandle<{protocol}> {{
-    &self.handle
-}}"
-        ));
+    out.template("streamer", &[("protocol", protocol)]);
+    out.deeper(1, |out| {
         for stream in streams(context).filter(|stream| stream.sender == Side::Robot) {
             let code = &stream.code.spelling;
             let mut docs = facts::method_docs(context, stream, |_| ());
@@ -166,6 +100,7 @@ pub fn handle(&self) -> &ServerHandle<{protocol}> {{
             out.line("}");
         }
     });
+    out.line("}");
 }
 
 /// Returns the streams that have a code.

@@ -39,90 +39,30 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     names.extend(has_streams.then(|| "streams".to_owned()));
     named(&mut out, "import", names, "./operations.ts");
     out.blank();
-    out.docs(&Docs::line([
-        "任意一个上报，`case` 是它的名称。",
-        "Any report. `case` is its name.",
-    ]));
+    out.template("any_report", &[]);
     let mut reports = parts(context, groups, "report", What::Reports);
     reports.push("UnknownReport".to_owned());
     union(&mut out, "AnyReport", &reports);
     out.blank();
     let calls = parts(context, groups, "calls", What::Commands);
-    if has_commands {
-        let about = ["每组指令的方法。", "The methods of each group of commands."];
-        merged(&mut out, "Client", about, &calls);
-    }
-    client_class(&mut out, &protocol, has_commands);
+    let calls = if has_commands {
+        merged(&mut out, "Client", ["指令", " of commands"], &calls);
+        CALLS
+    } else {
+        ""
+    };
+    let values = [("calls", calls), ("protocol", &protocol)];
+    out.template("client", &values);
     if has_streams {
-        app_streams(&mut out, &parts(context, groups, "streams", What::Streams));
+        let parts = parts(context, groups, "streams", What::Streams);
+        merged(&mut out, "Streams", ["数据流", " of streams"], &parts);
+        out.template("streams_class", &[]);
     }
     out.finish()
 }
 
-fn client_class(out: &mut Source, protocol: &str, has_commands: bool) {
-    out.docs(&Docs::line([
-        "一个机器人，从 app 一侧看：每条指令一个方法。",
-        "A robot as seen from the app: one method per command.",
-    ]));
-    out.block("export class Client extends Connection<AnyReport>", |out| {
-        if has_commands {
-            out.line("static {\n  addCalls(Client, service.methods)\n}");
-            out.blank();
-        }
-        out.docs(&Docs::said([
-            "连接机器人；`config` 中没有设置的项使用规范的默认值。",
-            "Connects to a robot. Settings missing from `config` have the defaults of the spec.",
-        ]));
-        out.line(format!(
-            "\
-static async connect(platform: Platform, config: ClientConfig = {{}}): Promise<Client> {{
-  return new Client(await dial({protocol}, platform, config))
-}}"
-        ));
-        out.documented(&Docs::two_lines([
-            "立即返回，在后台连接机器人；其间发起的调用在各自的时限内等待连接。",
-            "Returns at once and connects in the background. Calls made before that wait for the connection within their timeout.",
-        ]));
-        out.line(format!(
-            "\
-static connectLazy(platform: Platform, config: ClientConfig = {{}}): Client {{
-  return new Client(dialLater({protocol}, platform, config))
-}}"
-        ));
-    });
-}
-
-fn app_streams(out: &mut Source, parts: &[String]) {
-    let about = [
-        "每组数据流的方法。",
-        "The methods of each group of streams.",
-    ];
-    merged(out, "Streams", about, parts);
-    out.docs(&Docs::said([
-        "数据端口上的数据流：订阅机器人的数据流，发送 app 的数据流。",
-        "The streams of the data port. Subscribe to those of the robot, and send those of the app.",
-    ]));
-    out.block("export class Streams", |out| {
-        out.line("static {\n  addAppStreams(Streams, streams)\n}");
-        out.blank();
-        let about = ["数据连接。", "The data connection."];
-        let made = [
-            "数据连接上的数据流，见 `client.data()`。",
-            "The streams of a data connection; see `client.data()`.",
-        ];
-        constructor(out, ["data", "DataConnection"], about, made);
-    });
-}
-
-/// Writes the constructor of a class, and the protected member that its methods use. The groups declare the methods.
-pub fn constructor(out: &mut Source, [field, ty]: [&str; 2], about: [&str; 2], made: [&str; 2]) {
-    out.docs(&Docs::line(about));
-    out.line(format!("protected readonly {field}: {ty}"));
-    out.documented(&Docs::line(made));
-    out.block(format!("constructor({field}: {ty})"), |out| {
-        out.line(format!("this.{field} = {field}"));
-    });
-}
+/// The statement that gives `Client` the methods of the groups.
+const CALLS: &str = "  static {\n    addCalls(Client, service.methods)\n  }\n";
 
 /// Returns the runtime types that a group's part of the app's side names.
 pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'static str> {
@@ -143,22 +83,11 @@ pub fn runtime_types(context: &Context<'_>, group: &Group<'_, '_>) -> Vec<&'stat
 
 /// Writes a group's part of the app's side.
 pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
-    let calls = (
-        "calls",
-        [
-            "本组的指令，`Client` 的方法。",
-            "The commands of the group: methods of `Client`.",
-        ],
-    );
-    group.interface(out, context, calls, &group.commands, |out, command| {
+    group.interface(out, context, "calls", &group.commands, |out, command| {
         call(out, context, command);
     });
     if group.has(What::Reports) {
-        out.blank();
-        out.docs(&Docs::line([
-            "本组的任意一个上报，`case` 是它的名称。",
-            "Any report of the group. `case` is its name.",
-        ]));
+        out.template("report", &[]);
         let reported = own(context, "Reported");
         let reports = group.reports.iter().map(|report| {
             let name = &report.request.ty.name;
@@ -168,14 +97,7 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         let name = group.part(context, "report");
         alternatives(out, &name, &reports.collect::<Vec<_>>());
     }
-    let streams = (
-        "streams",
-        [
-            "本组的数据流，`Streams` 的方法。",
-            "The streams of the group: methods of `Streams`.",
-        ],
-    );
-    group.interface(out, context, streams, &group.streams, |out, stream| {
+    group.interface(out, context, "streams", &group.streams, |out, stream| {
         let (name, held) = (&stream.name, carried(context, stream, ""));
         out.docs(&stream_docs(context, stream));
         if stream.sender == Side::Robot {

@@ -7,7 +7,6 @@ use super::layout::Layout;
 use super::operations::{code, languages};
 use super::source::{head, named};
 use super::wire::header;
-use crate::package::docs::Docs;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{Direction, Operation, ResultRole, Text};
 
@@ -28,8 +27,7 @@ pub fn file(context: &Context<'_>, samples: &Samples<'_>) -> String {
         out.line("import * as schemas from './schemas.ts'");
     }
     out.line("import { wire } from './wire.ts'");
-    out.blank();
-    out.docs(&Docs::line(["规范中的协议。", "The protocol of the spec."]));
+    out.template("described", &[]);
     protocol(context, samples).write(&mut out, "export const protocol: Protocol = ", "");
     out.finish()
 }

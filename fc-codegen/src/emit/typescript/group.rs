@@ -5,7 +5,6 @@
 use super::context::{Context, own, spelled};
 use super::root;
 use super::source::{Source, head, nothing};
-use crate::package::docs::Docs;
 use crate::package::items::{Item, Spelled};
 use crate::package::language::{Role, TYPESCRIPT};
 use crate::package::process::set_off;
@@ -65,18 +64,20 @@ impl<'p, 'm> Group<'p, 'm> {
     }
 
     /// Writes the group's part of a class as an interface with these members. Without members it writes no interface.
+    ///
+    /// The template with the name of the part is its comment.
     pub fn interface<T>(
         &self,
         out: &mut Source,
         context: &Context<'_>,
-        (word, about): (&str, [&str; 2]),
+        word: &str,
         members: &[T],
         member: impl Fn(&mut Source, &T),
     ) {
         if members.is_empty() {
             return;
         }
-        out.documented(&Docs::line(about));
+        out.template(word, &[]);
         let name = self.part(context, word);
         out.block(format!("export interface {name}"), |out| {
             for one in members {
@@ -156,8 +157,8 @@ pub fn extending(out: &Source, name: &str, parts: &[String]) -> String {
 }
 
 /// Writes an interface that gives the class with the same name the methods of `parts`.
-pub fn merged(out: &mut Source, name: &str, about: [&str; 2], parts: &[String]) {
-    out.documented(&Docs::line(about));
+pub fn merged(out: &mut Source, name: &str, [zh, en]: [&str; 2], parts: &[String]) {
+    out.template("methods", &[("zh", zh), ("en", en)]);
     out.line([&extending(out, name, parts), " {}"].concat());
     out.blank();
 }

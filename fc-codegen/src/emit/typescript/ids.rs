@@ -3,7 +3,6 @@
 use super::context::{Context, is_64_bit, type_of};
 use super::source::{head, literal, named};
 use crate::package::about;
-use crate::package::docs::Docs;
 
 /// Generates `ids.ts`.
 pub fn file(context: &Context<'_>) -> String {
@@ -22,21 +21,12 @@ pub fn file(context: &Context<'_>) -> String {
         };
         let (name, held) = (&id.name, type_of(context, held, is_64_bit(held)));
         out.documented(&about::id(context, id.of));
-        out.line(format!(
-            "export type {name} = Id<{held}, {}>",
-            literal(name)
-        ));
-        out.blank();
-        out.docs(&Docs::line([
-            "返回取此值的 ID。",
-            "Returns the ID with this value.",
-        ]));
-        out.block(
-            format!("export function {name}(value: {held}): {name}"),
-            |out| {
-                out.line(format!("return value as {name}"));
-            },
-        );
+        let values = [
+            ("name", &**name),
+            ("held", &held),
+            ("literal", &literal(name)),
+        ];
+        out.template("id", &values);
     }
     out.finish()
 }

@@ -124,10 +124,7 @@ fn structure(
             out.line(property(&field.name, &ty, field.optional));
             out.blank();
         }
-        out.docs(&Docs::line([
-            "其他键，原样保留。",
-            "Other keys, kept unchanged.",
-        ]));
+        out.template("extra", &[]);
         out.line(property("extra", &own(context, "Extra"), true));
     });
 }
@@ -169,10 +166,7 @@ fn enumeration(
     let known: Vec<String> = known.chain(open.map(str::to_owned)).collect();
     union(out, name, &known);
     out.blank();
-    out.docs(&Docs::line([
-        format!("{{@link {name}}}：各个值。"),
-        "Its values.".to_owned(),
-    ]));
+    out.template("values", &[("name", name)]);
     out.enclose(&format!("export const {name} = {{"), "} as const", |out| {
         for value in values {
             let docs = facts::value_docs(value);

@@ -37,20 +37,16 @@ pub fn commands(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, 
     for call in commands {
         command(&mut out, context, samples, call);
     }
-    let about = [
-        "本组的指令，按方法名。",
-        "The commands of the group, by the names of their methods.",
-    ];
     let methods: Vec<String> = commands.iter().map(|it| it.method.to_owned()).collect();
-    all(&mut out, about, "AnyCommand", &methods);
+    all(&mut out, "commands_of_group", "AnyCommand", &methods);
     out.finish()
 }
 
 /// Writes the group's entry for the lists of the package, in the order of the spec.
 ///
 /// The entry is a default export, which `export *` skips.
-fn all(out: &mut Source, about: [&str; 2], ty: &str, members: &[String]) {
-    out.documented(&Docs::line(about));
+fn all(out: &mut Source, about: &str, ty: &str, members: &[String]) {
+    out.template(about, &[]);
     // Each member has a separate line, so that a new member changes no other line.
     let close = format!("}} as Readonly<Record<string, {ty}>>");
     out.lines("export default {", members, &close);
@@ -279,12 +275,8 @@ pub fn reports(context: &Context<'_>, samples: &Samples<'_>, group: &Group<'_, '
         let names = [call.method, "Report"];
         write(&mut out, context, operation, names, &types, members);
     }
-    let about = [
-        "本组的上报，按方法名。",
-        "The reports of the group, by the names of their methods.",
-    ];
     let methods: Vec<String> = reports.iter().map(|it| it.method.to_owned()).collect();
-    all(&mut out, about, "AnyReportOf", &methods);
+    all(&mut out, "reports_of_group", "AnyReportOf", &methods);
     out.finish()
 }
 
@@ -374,14 +366,15 @@ pub fn streams(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) ->
             members,
         );
     }
-    let about = [
-        "本组的数据流，按方法名中的名称。",
-        "The streams of the group, by the names in their methods.",
-    ];
     let members = streams
         .iter()
         .map(|it| format!("{}: {}", it.name, spelled(Role::Method, &it.of.name)));
-    all(&mut out, about, "AnyStream", &members.collect::<Vec<_>>());
+    all(
+        &mut out,
+        "streams_of_group",
+        "AnyStream",
+        &members.collect::<Vec<_>>(),
+    );
     out.finish()
 }
 

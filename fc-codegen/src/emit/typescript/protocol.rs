@@ -4,19 +4,17 @@ use super::context::{Context, spelled};
 use super::group::{Group, What};
 use super::layout::Layout;
 use super::source::{Source, head, named};
-use crate::package::docs::Docs;
+use crate::package::about;
 use crate::package::language::Role;
 use crate::package::ranges::{self, UNKNOWN};
 use fc_spec::model::CodeRange;
 
 pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
-    let mut out = head(
-        context,
-        [
-            "协议：数值和全部接口。",
-            "The protocol: its numbers and all of its operations.",
-        ],
-    );
+    let about = [
+        "协议：数值和全部接口。",
+        "The protocol: its numbers and all of its operations.",
+    ];
+    let mut out = head(context, about);
     let names = [
         "AnyCommand",
         "AnyReportOf",
@@ -39,22 +37,8 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
         }
     }
     out.line("import { wire } from './wire.ts'");
-    let about = [
-        [
-            "全部指令，按方法名。",
-            "All commands, by the names of their methods.",
-        ],
-        [
-            "全部上报，按方法名。",
-            "All reports, by the names of their methods.",
-        ],
-        [
-            "全部数据流，按方法名中的名称。",
-            "All streams, by the names in their methods.",
-        ],
-    ];
-    for ((word, ty, what), about) in all.iter().zip(about) {
-        out.documented(&Docs::line(about));
+    for (word, ty, what) in &all {
+        out.template(&format!("all_{word}"), &[]);
         let groups = groups.iter().filter(|it| it.has(*what));
         let variables: Vec<String> = groups
             .map(|it| format!("...{}", it.variable(word)))
@@ -66,12 +50,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
         );
     }
 
-    let protocol = &context.model().protocol;
-    let mut docs = Docs::titled(&protocol.title);
-    docs.text(&protocol.about);
-    docs.paragraph(format!("Version {} of the spec.", protocol.version));
-    out.blank();
-    out.docs(&docs);
+    out.documented(&about::protocol(context.model()));
     let members = all
         .iter()
         .map(|(word, ..)| (*word, Layout::word(format!("Object.values({word})"))));
@@ -79,11 +58,7 @@ pub fn file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> String {
     Layout::lines([("wire", Layout::word("wire"))].into_iter().chain(members))
         .write(&mut out, &head, "");
 
-    out.blank();
-    out.docs(&Docs::line([
-        "机器人的每个方法对应的指令。",
-        "The command of each method of a robot.",
-    ]));
+    out.template("service", &[]);
     let ranges = self::ranges(context).into_iter().map(|(method, range)| {
         Layout::object([
             ("first", Layout::Number(range.first_spelling.to_lowercase())),

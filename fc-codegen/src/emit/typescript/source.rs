@@ -17,6 +17,7 @@ pub static TYPESCRIPT: Style = Style {
     comment: Comment {
         open: "/**",
         mark: " *",
+        inner_mark: " *",
         close: " */",
         begins_at_once: false,
         prose,
@@ -26,6 +27,7 @@ pub static TYPESCRIPT: Style = Style {
     link: |name| format!("{{@link {name}}}"),
     integer: |value| value.to_string(),
     redacted: "Left out by `redacted`.",
+    templates: include_str!("templates.ts.in"),
 };
 
 /// Escapes prose that could end the comment, or read as a link or a tag.

@@ -7,9 +7,7 @@ use super::layout::Layout;
 use super::operations::typed;
 use super::source::{head, literal, named, nothing};
 use crate::package::about;
-use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
-use crate::package::facts;
 use crate::sample::Samples;
 use fc_spec::model::Value;
 
@@ -27,14 +25,7 @@ pub fn file(context: &Context<'_>) -> String {
     out.line("import * as messages from './messages.ts'");
     let expressions = Expressions::new(&context.package);
     for table in tables {
-        let mut docs = Docs::titled(&table.title);
-        docs.text(&table.about);
-        if let Some(store) = &table.kept {
-            docs.paragraph(facts::kept(store));
-        }
-        docs.paragraph(context.links(&table.location, "reference/tables.md"));
-        out.blank();
-        out.docs(&docs);
+        out.documented(&about::table(context, table.of));
         let rows = table.rows.iter();
         let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
         let head = format!(

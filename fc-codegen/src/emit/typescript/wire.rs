@@ -42,11 +42,7 @@ pub fn file(context: &Context<'_>) -> String {
         &package.response_envelope,
     );
     results(&mut out, context);
-    out.blank();
-    out.docs(&Docs::line([
-        "消息之下各层的全部数值。",
-        "All numbers of the layers below the messages.",
-    ]));
+    out.template("wire", &[]);
     wire(context).write(&mut out, "export const wire: Wire = ", "");
     out.finish()
 }
@@ -108,13 +104,10 @@ fn results(out: &mut Source, context: &Context<'_>) {
     let codes: Vec<String> = codes.chain(["(number & {})".to_owned()]).collect();
     super::messages::union(out, "ResultCode", &codes);
     out.blank();
-    out.docs(&Docs::line(["{@link ResultCode}：各个值。", "Its values."]));
+    out.template("values", &[("name", "ResultCode")]);
     out.enclose("export const ResultCode = {", "} as const", |out| {
         for result in results {
-            let mut docs = Docs::titled(&result.text);
-            docs.text(&result.about);
-            out.blank();
-            out.docs(&docs);
+            out.documented(&about::result(result.of));
             out.line(format!("{}: {},", result.name, result.code));
         }
     });

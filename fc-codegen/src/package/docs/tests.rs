@@ -4,6 +4,7 @@ use super::*;
 const COMMENT: Comment = Comment {
     open: "",
     mark: "",
+    inner_mark: "",
     close: "",
     begins_at_once: false,
     prose: escape_links,

@@ -121,8 +121,8 @@ internal abstract class ExampleAnswers(private val pretendMotion: Boolean) {
 }
 
 /**
- * 由此机器人处理规范中的指令，供 \[Server.bind\] 使用。
- * A service that handles the commands with this robot, for \[Server.bind\].
+ * 由此机器人处理规范中的指令，供 [Server.bind] 使用。
+ * A service that handles the commands with this robot, for [Server.bind].
  */
 public fun Robot.service(): Service =
     Service()
