@@ -4,14 +4,40 @@
 //! without a filter is escaped for a table cell, the strictest place, and does not count as a sentence of the spec.
 //! Printing nothing, a list or an object is an error of the template.
 
+use super::available::AvailableView;
+use super::bytes::FrameView;
+use super::enums::EnumView;
 use super::escape::{self, Place};
+use super::links::Link;
+use super::places::{Given, Kept};
+use super::rows::DeprecationNote;
 use super::terms::marked;
 use fc_spec::model::Lang;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Rest, Serde, Value, ValueKind};
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, Output, State, UndefinedBehavior};
-use serde::Serialize;
 use std::borrow::Cow;
+
+/// Lets a view contain these types.
+macro_rules! shown {
+    ($($ty:ty),*) => {
+        $(impl From<$ty> for Value {
+            fn from(shown: $ty) -> Self {
+                Self::from(Serde(shown))
+            }
+        })*
+    };
+}
+
+shown!(
+    AvailableView,
+    DeprecationNote,
+    EnumView,
+    FrameView,
+    Given,
+    Kept,
+    Link
+);
 
 macro_rules! templates {
     ($($name:literal)*) => {
@@ -102,8 +128,8 @@ impl Engine {
     }
 
     /// Renders a page, before [`tidy`]. The spec's sentences are marked.
-    pub(super) fn render<V: Serialize>(&self, template: &str, view: &V) -> Result<String, Error> {
-        self.environment.get_template(template)?.render(Serde(view))
+    pub(super) fn render(&self, template: &str, view: Value) -> Result<String, Error> {
+        self.environment.get_template(template)?.render(view)
     }
 }
 

@@ -1,8 +1,8 @@
 //! The reference pages of the docs, in Chinese and English.
 //!
-//! Each kind of page has a typed view (`pages`) and a template for its layout (`templates`). Both languages share a
-//! template, and each fixed phrase is in it in both languages, so that no translation is missing. The views choose the
-//! language of the spec's sentences.
+//! Each kind of page has a view with its values (`pages`) and a template for its layout (`templates`). Both languages
+//! share a template, and each fixed phrase is in it in both languages, so that no translation is missing. The views
+//! choose the language of the spec's sentences.
 //!
 //! Pages are plain Markdown with explicit anchors. `VitePress` renders them unchanged.
 
@@ -107,23 +107,23 @@ impl<'m> Press<'m> {
         let book = &self.book;
         let desk = Desk { book, lang, page };
         let contents = match page {
-            Page::Index => engine.render("index.md.j2", &pages::index(desk)),
-            Page::Wire => engine.render("wire.md.j2", &pages::wire(desk)),
-            Page::Codes => engine.render("codes.md.j2", &pages::codes(desk)),
-            Page::Types => engine.render("types.md.j2", &pages::types(desk)),
-            Page::Results => engine.render("results.md.j2", &pages::results(desk)),
-            Page::Tables => engine.render("tables.md.j2", &pages::tables(desk)),
-            Page::Entities => engine.render("entities.md.j2", &pages::entities(desk)),
-            Page::Places => engine.render("places.md.j2", &pages::places(desk)),
-            Page::Glossary => engine.render("glossary.md.j2", &pages::glossary(desk)),
-            Page::Changelog => engine.render("changelog.md.j2", &pages::changelog(desk)),
+            Page::Index => engine.render("index.md.j2", pages::index(desk)),
+            Page::Wire => engine.render("wire.md.j2", pages::wire(desk)),
+            Page::Codes => engine.render("codes.md.j2", pages::codes(desk)),
+            Page::Types => engine.render("types.md.j2", pages::types(desk)),
+            Page::Results => engine.render("results.md.j2", pages::results(desk)),
+            Page::Tables => engine.render("tables.md.j2", pages::tables(desk)),
+            Page::Entities => engine.render("entities.md.j2", pages::entities(desk)),
+            Page::Places => engine.render("places.md.j2", pages::places(desk)),
+            Page::Glossary => engine.render("glossary.md.j2", pages::glossary(desk)),
+            Page::Changelog => engine.render("changelog.md.j2", pages::changelog(desk)),
             Page::OpenQuestions => {
-                engine.render("open-questions.md.j2", &pages::open_questions(desk))
+                engine.render("open-questions.md.j2", pages::open_questions(desk))
             }
-            Page::Language => engine.render("language.md.j2", &pages::language(desk)),
-            Page::Errors => engine.render("errors.md.j2", &pages::errors(desk)),
+            Page::Language => engine.render("language.md.j2", pages::language(desk)),
+            Page::Errors => engine.render("errors.md.j2", pages::errors(desk)),
             Page::Operation(operation) => {
-                engine.render("operation.md.j2", &pages::operation(desk, operation))
+                engine.render("operation.md.j2", pages::operation(desk, operation))
             }
         };
         let contents = contents.unwrap_or_else(|error| panic!("{error:#}"));

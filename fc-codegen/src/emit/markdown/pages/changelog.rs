@@ -1,41 +1,13 @@
 //! All dated entries, newest first.
 
-use super::shared::Desk;
+use super::shared::{Desk, list};
 use crate::emit::markdown::book::Book;
 use crate::emit::markdown::links::Link;
 use fc_spec::model::{Change, Deprecation, Operation, Subject, TypeShape};
-use serde::Serialize;
+use minijinja::{Value, context};
 use std::collections::BTreeMap;
 
-#[derive(Debug, Serialize)]
-pub(in crate::emit::markdown) struct ChangelogView {
-    years: Vec<Year>,
-    /// Entries without a date. They are all deprecations.
-    undated: Vec<Entry>,
-}
-
-#[derive(Debug, Serialize)]
-struct Year {
-    name: String,
-    days: Vec<Day>,
-}
-
-#[derive(Debug, Serialize)]
-struct Day {
-    date: String,
-    entries: Vec<Entry>,
-}
-
-#[derive(Debug, Serialize)]
-struct Entry {
-    /// `changed`, `added`, `deprecated`.
-    what: &'static str,
-    /// The subject; `None` for the whole protocol.
-    about: Option<Link>,
-    text: Option<String>,
-}
-
-pub(in crate::emit::markdown) fn changelog(desk: Desk<'_, '_>) -> ChangelogView {
+pub(in crate::emit::markdown) fn changelog(desk: Desk<'_, '_>) -> Value {
     let model = desk.book.model;
     let mut log = Log {
         desk,
@@ -47,31 +19,32 @@ pub(in crate::emit::markdown) fn changelog(desk: Desk<'_, '_>) -> ChangelogView 
         log.operation(operation);
     }
     log.types(desk.book);
-    let mut years: Vec<Year> = Vec::new();
+    let mut years: Vec<(String, Vec<Value>)> = Vec::new();
     for (date, entries) in log.days.into_iter().rev() {
         let name = date.split('-').next().unwrap_or_default().to_owned();
-        if years.last().is_none_or(|year| year.name != name) {
-            let days = Vec::new();
-            years.push(Year { name, days });
+        if years.last().is_none_or(|(year, _)| *year != name) {
+            years.push((name, Vec::new()));
         }
-        if let Some(year) = years.last_mut() {
-            year.days.push(Day { date, entries });
+        if let Some((_, days)) = years.last_mut() {
+            days.push(context! { date, entries });
         }
     }
-    ChangelogView {
-        years,
-        undated: log.undated,
+    let years = years.into_iter();
+    context! {
+        years => list(years.map(|(name, days)| context! { name, days })),
+        // They are all deprecations.
+        undated => log.undated,
     }
 }
 
 struct Log<'b, 'm> {
     desk: Desk<'b, 'm>,
-    days: BTreeMap<String, Vec<Entry>>,
-    undated: Vec<Entry>,
+    days: BTreeMap<String, Vec<Value>>,
+    undated: Vec<Value>,
 }
 
 impl<'m> Log<'_, 'm> {
-    fn push(&mut self, date: Option<&String>, entry: Entry) {
+    fn push(&mut self, date: Option<&String>, entry: Value) {
         match date {
             Some(date) => self.days.entry(date.clone()).or_default().push(entry),
             None => self.undated.push(entry),
@@ -81,11 +54,7 @@ impl<'m> Log<'_, 'm> {
     fn changes(&mut self, changes: &[Change], about: Option<&Link>) {
         for change in changes {
             let text = Some(self.desk.sentence(&change.text));
-            let entry = Entry {
-                what: "changed",
-                about: about.cloned(),
-                text,
-            };
+            let entry = context! { what => "changed", about => about.cloned(), text };
             self.push(Some(&change.date), entry);
         }
     }
@@ -93,22 +62,15 @@ impl<'m> Log<'_, 'm> {
     /// Adds an entry for a new item. Items from the start of the protocol get none.
     fn added(&mut self, since: Option<&String>, about: &Link, text: Option<String>) {
         if since.is_some() {
-            let entry = Entry {
-                what: "added",
-                about: Some(about.clone()),
-                text,
-            };
+            let entry = context! { what => "added", about => about.clone(), text };
             self.push(since, entry);
         }
     }
 
     fn deprecated(&mut self, deprecated: Option<&Deprecation>, about: &Link) {
         if let Some(deprecated) = deprecated {
-            let entry = Entry {
-                what: "deprecated",
-                about: Some(about.clone()),
-                text: Some(self.desk.sentence(&deprecated.note)),
-            };
+            let text = self.desk.sentence(&deprecated.note);
+            let entry = context! { what => "deprecated", about => about.clone(), text };
             self.push(deprecated.since.as_ref(), entry);
         }
     }

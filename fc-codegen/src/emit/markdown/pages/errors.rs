@@ -1,52 +1,33 @@
 //! The errors of the spec's checks and the rules of the lint, with the texts of `fcproto explain`.
 
-use super::shared::Desk;
+use super::shared::{Desk, list};
 use fc_spec::diagnostic::FaultCode;
 use fc_spec::lint;
-use serde::Serialize;
+use minijinja::{Value, context};
 
-#[derive(Debug, Serialize)]
-pub(in crate::emit::markdown) struct ErrorsView {
-    errors: Vec<ErrorView>,
-    rules: Vec<RuleView>,
-}
-
-#[derive(Debug, Serialize)]
-struct RuleView {
-    code: &'static str,
-    title: &'static str,
-    setting: String,
-    text: &'static str,
-}
-
-#[derive(Debug, Serialize)]
-struct ErrorView {
-    code: &'static str,
-    title: &'static str,
-    text: String,
-}
-
-pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> ErrorsView {
+pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> Value {
     let wrong = desk.lang.pick("错误：", "Wrong:");
     let right = desk.lang.pick("正确：", "Right:");
-    let error = |code: &FaultCode| ErrorView {
-        code: code.as_str(),
-        title: code.title(desk.lang),
-        text: told(code.explain(desk.lang), wrong, right),
+    let error = |code: &FaultCode| {
+        context! {
+            code => code.as_str(),
+            title => code.title(desk.lang),
+            text => told(code.explain(desk.lang), wrong, right),
+        }
     };
     let rule = |rule: &lint::Rule| {
         let pick = |[en, zh]: [&'static str; 2]| desk.lang.pick(zh, en);
         let [en, zh] = rule.setting();
-        RuleView {
-            code: rule.code.number,
-            title: pick(rule.code.title),
-            setting: desk.lang.pick(zh, en),
-            text: pick(rule.code.text),
+        context! {
+            code => rule.code.number,
+            title => pick(rule.code.title),
+            setting => desk.lang.pick(zh, en),
+            text => pick(rule.code.text),
         }
     };
-    ErrorsView {
-        rules: lint::Rule::all().map(rule).collect(),
-        errors: FaultCode::ALL.iter().map(error).collect(),
+    context! {
+        rules => list(lint::Rule::all().map(rule)),
+        errors => list(FaultCode::ALL.iter().map(error)),
     }
 }
 

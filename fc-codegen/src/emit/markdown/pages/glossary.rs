@@ -1,32 +1,13 @@
 //! The terms of the protocol, their meanings and their uses.
 
-use super::shared::Desk;
+use super::shared::{Desk, list};
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use fc_spec::model::Lang;
 use fc_spec::model::{Operation, Term, Text, TypeDef, TypeShape};
-use serde::Serialize;
+use minijinja::{Value, context};
 use std::collections::HashMap;
 
-#[derive(Debug, Serialize)]
-pub(in crate::emit::markdown) struct GlossaryView {
-    terms: Vec<TermView>,
-}
-
-#[derive(Debug, Serialize)]
-struct TermView {
-    anchor: String,
-    word: String,
-    /// The word of the other language.
-    other: String,
-    /// Other forms of the word.
-    also: Vec<String>,
-    means: String,
-    /// The operations and types whose texts contain it.
-    uses: Vec<Link>,
-    spec: Link,
-}
-
-pub(in crate::emit::markdown) fn glossary(desk: Desk<'_, '_>) -> GlossaryView {
+pub(in crate::emit::markdown) fn glossary(desk: Desk<'_, '_>) -> Value {
     let lang = desk.lang;
     let mut terms: Vec<&Term> = desk.book.model.glossary.iter().collect();
     // Chinese terms keep the spec's order, which is by subject.
@@ -34,17 +15,19 @@ pub(in crate::emit::markdown) fn glossary(desk: Desk<'_, '_>) -> GlossaryView {
         terms.sort_by_key(|term| term.word.en.to_lowercase());
     }
     let mut uses = uses(desk);
-    let view = |term: &Term| TermView {
-        anchor: Anchor::of("term", &term.id).id(),
-        word: lang.text(&term.word).to_owned(),
-        other: lang.pick(&term.word.en, &term.word.zh).clone(),
-        also: lang.aliases(&term.also),
-        means: (desk.book.terms(lang)).linked(desk.page, &desk.sentence(&term.means), term),
-        uses: uses.remove(term.id.as_str()).unwrap_or_default(),
-        spec: desk.spec(&term.location),
+    let view = |term: &Term| {
+        context! {
+            anchor => Anchor::of("term", &term.id).id(),
+            word => lang.text(&term.word),
+            other => lang.pick(&term.word.en, &term.word.zh).clone(),
+            also => lang.aliases(&term.also),
+            means => (desk.book.terms(lang)).linked(desk.page, &desk.sentence(&term.means), term),
+            uses => list(uses.remove(term.id.as_str()).unwrap_or_default()),
+            spec => desk.spec(&term.location),
+        }
     };
-    GlossaryView {
-        terms: terms.into_iter().map(view).collect(),
+    context! {
+        terms => list(terms.into_iter().map(view)),
     }
 }
 

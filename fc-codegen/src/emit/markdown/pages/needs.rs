@@ -1,64 +1,26 @@
 //! The conditions for accepting a command, and the times of a report.
 
-use super::shared::Desk;
+use super::shared::{Desk, list};
 use crate::emit::markdown::links::Link;
 use crate::emit::markdown::rows::{Row, scalar};
 use fc_spec::model::{
     Accepted, AcceptedIn, Cadence, Number, Operation, StateSet, Step, TypeShape, Value,
 };
-use serde::Serialize;
+use minijinja::context;
 
-/// The conditions for accepting a command.
-#[derive(Debug, Serialize)]
-pub(super) struct AcceptedView {
-    /// `true` if every state is accepted.
-    any: bool,
-    /// The enums whose values matter.
-    states: Vec<StatesView>,
-    /// The commands that must come first.
-    after: Vec<Link>,
-    note: Option<String>,
-}
-
-#[derive(Debug, Serialize)]
-struct StatesView {
-    link: Link,
-    values: Vec<StateView>,
-}
-
-#[derive(Debug, Serialize)]
-struct StateView {
-    /// JSON.
-    wire: String,
-    name: String,
-}
-
-/// The times of a report.
-#[derive(Debug, Serialize)]
-pub(super) struct CadenceView {
-    /// The field that triggers it.
-    field: Option<Link>,
-    /// The change of a number between two reports.
-    step: Option<String>,
-    every_ms: Option<u32>,
-    within_ms: Option<u32>,
-}
-
-pub(super) fn accepted(desk: Desk<'_, '_>, accepted: &Accepted) -> AcceptedView {
+pub(super) fn accepted(desk: Desk<'_, '_>, accepted: &Accepted) -> minijinja::Value {
     let states = accepted.state_sets().iter();
     let after = accepted.after.iter();
-    AcceptedView {
-        any: matches!(accepted.states, Some(AcceptedIn::Any)),
-        states: states.map(|set| states_view(desk, set)).collect(),
-        after: after
-            .filter_map(|name| desk.book.operation(name))
-            .map(|command| desk.operation(command))
-            .collect(),
-        note: accepted.note.as_ref().map(|note| desk.sentence(note)),
+    let after = after.filter_map(|name| Some(desk.operation(desk.book.operation(name)?)));
+    context! {
+        any => matches!(accepted.states, Some(AcceptedIn::Any)),
+        states => list(states.map(|set| states_view(desk, set))),
+        after => list(after),
+        note => accepted.note.as_ref().map(|note| desk.sentence(note)),
     }
 }
 
-fn states_view(desk: Desk<'_, '_>, set: &StateSet) -> StatesView {
+fn states_view(desk: Desk<'_, '_>, set: &StateSet) -> minijinja::Value {
     let ty = desk.book.model.types.get(&set.ty);
     let known = match &ty.shape {
         TypeShape::Enum(shape) => shape.values.as_slice(),
@@ -66,17 +28,17 @@ fn states_view(desk: Desk<'_, '_>, set: &StateSet) -> StatesView {
     };
     let values = set.values.iter().map(|wire| {
         let value = known.iter().find(|value| value.wire == *wire);
-        StateView {
-            wire: scalar(wire),
-            name: value.map_or_else(String::new, |value| value.name.clone()),
+        context! {
+            wire => scalar(wire),
+            name => value.map_or_else(String::new, |value| value.name.clone()),
         }
     });
-    StatesView {
-        link: Link {
+    context! {
+        link => Link {
             text: desk.lang.text(&ty.title).to_owned(),
             href: desk.page.link(desk.book.place_of_type(ty)),
         },
-        values: values.collect(),
+        values => list(values),
     }
 }
 
@@ -84,7 +46,7 @@ fn states_view(desk: Desk<'_, '_>, set: &StateSet) -> StatesView {
 pub(super) fn cadence<'r>(
     operation: &Operation,
     mut rows: impl Iterator<Item = &'r Row>,
-) -> Option<CadenceView> {
+) -> Option<minijinja::Value> {
     let cadence = operation.cadence()?;
     let field = cadence.field().map(|path| {
         // The rows mark items of lists, and the path of a cadence does not.
@@ -95,17 +57,17 @@ pub(super) fn cadence<'r>(
         }
     });
     let number = |number: &Number| Value::Number(number.clone()).to_string();
-    Some(CadenceView {
+    Some(context! {
         field,
-        step: match cadence {
+        step => match cadence {
             Cadence::Step(Step { by, .. }) => Some(number(by)),
             Cadence::OnChange(_) | Cadence::EveryMs(_) | Cadence::WithinMs(_) => None,
         },
-        every_ms: match cadence {
+        every_ms => match cadence {
             Cadence::EveryMs(ms) => Some(*ms),
             Cadence::OnChange(_) | Cadence::Step(_) | Cadence::WithinMs(_) => None,
         },
-        within_ms: match cadence {
+        within_ms => match cadence {
             Cadence::WithinMs(ms) => Some(*ms),
             Cadence::OnChange(_) | Cadence::Step(_) | Cadence::EveryMs(_) => None,
         },

@@ -1,45 +1,13 @@
 //! Coordinate systems and stores, with the messages and types that use them.
 
-use super::shared::{Desk, MessageView};
+use super::shared::{Desk, list};
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::Row;
-use crate::emit::markdown::words;
-use fc_spec::model::{CoordinateSystem, Direction, Operation, Store, TypeDef, TypeShape};
-use serde::Serialize;
+use fc_spec::model::{CoordinateSystem, Direction, Store, TypeDef, TypeShape};
+use minijinja::{Value, context};
 use std::collections::HashMap;
 
-#[derive(Debug, Serialize)]
-pub(in crate::emit::markdown) struct PlacesView {
-    systems: Vec<SystemView>,
-    stores: Vec<StoreView>,
-}
-
-#[derive(Debug, Serialize)]
-struct SystemView {
-    anchor: String,
-    name: String,
-    title: String,
-    about: Option<String>,
-    /// The shared structs in this coordinate system.
-    types: Vec<Link>,
-    messages: Vec<MessageView>,
-    spec: Link,
-}
-
-#[derive(Debug, Serialize)]
-struct StoreView {
-    anchor: String,
-    name: String,
-    title: String,
-    about: Option<String>,
-    survives_restart: Option<bool>,
-    operations: Vec<Link>,
-    tables: Vec<Link>,
-    messages: Vec<MessageView>,
-    spec: Link,
-}
-
-pub(in crate::emit::markdown) fn places(desk: Desk<'_, '_>) -> PlacesView {
+pub(in crate::emit::markdown) fn places(desk: Desk<'_, '_>) -> Value {
     let model = desk.book.model;
     let mut systems = HashMap::new();
     let mut stores = HashMap::new();
@@ -50,98 +18,70 @@ pub(in crate::emit::markdown) fn places(desk: Desk<'_, '_>) -> PlacesView {
     if !model.stores.is_empty() {
         stores = messages(desk, Row::store);
     }
-    PlacesView {
-        systems: model
-            .coordinates
-            .iter()
-            .map(|it| system(desk, it, systems.remove(&it.name)))
-            .collect(),
-        stores: model
-            .stores
-            .iter()
-            .map(|it| store(desk, it, stores.remove(&it.name)))
-            .collect(),
+    let of_spec = model.coordinates.iter();
+    let systems = of_spec.map(|it| system(desk, it, systems.remove(&it.name)));
+    let of_spec = model.stores.iter();
+    let stores = of_spec.map(|it| store(desk, it, stores.remove(&it.name)));
+    context! {
+        systems => list(systems),
+        stores => list(stores),
     }
 }
 
-fn system(
-    desk: Desk<'_, '_>,
-    system: &CoordinateSystem,
-    messages: Option<Vec<MessageView>>,
-) -> SystemView {
+fn system(desk: Desk<'_, '_>, system: &CoordinateSystem, messages: Option<Vec<Value>>) -> Value {
     let is_given = |ty: &&TypeDef| match &ty.shape {
         TypeShape::Struct(shape) => shape.coordinates.as_ref() == Some(&system.name),
         TypeShape::Enum(_) | TypeShape::OneOf(_) => false,
     };
     let types = desk.book.model.types.iter();
     let shared = types.filter(|ty| ty.body_of.is_none()).filter(is_given);
-    SystemView {
-        anchor: Anchor::of("coordinates", &system.name).id(),
-        name: system.name.clone(),
-        title: desk.lang.text(&system.title).to_owned(),
-        about: system.about.as_ref().map(|about| desk.sentence(about)),
-        types: shared
-            .map(|ty| Link {
+    context! {
+        anchor => Anchor::of("coordinates", &system.name).id(),
+        name => &system.name,
+        title => desk.lang.text(&system.title),
+        about => system.about.as_ref().map(|about| desk.sentence(about)),
+        types => list(shared.map(|ty| Link {
                 text: format!("`{}`", ty.name),
                 href: desk.page.link(desk.book.place_of_type(ty)),
-            })
-            .collect(),
-        messages: messages.unwrap_or_default(),
-        spec: desk.spec(&system.location),
+            })),
+        messages => messages.unwrap_or_default(),
+        spec => desk.spec(&system.location),
     }
 }
 
-fn store(desk: Desk<'_, '_>, store: &Store, messages: Option<Vec<MessageView>>) -> StoreView {
+fn store(desk: Desk<'_, '_>, store: &Store, messages: Option<Vec<Value>>) -> Value {
     let model = desk.book.model;
     let is_kept = |kept: &Option<String>| kept.as_ref() == Some(&store.name);
     let operations = model.operations.iter().filter(|it| is_kept(&it.kept));
     let tables = model.tables.iter().filter(|it| is_kept(&it.kept));
-    StoreView {
-        anchor: Anchor::of("store", &store.name).id(),
-        name: store.name.clone(),
-        title: desk.lang.text(&store.title).to_owned(),
-        about: store.about.as_ref().map(|about| desk.sentence(about)),
-        survives_restart: store.survives_restart,
-        operations: operations.map(|it| desk.operation(it)).collect(),
-        tables: tables
-            .map(|table| Link {
+    context! {
+        anchor => Anchor::of("store", &store.name).id(),
+        name => &store.name,
+        title => desk.lang.text(&store.title),
+        about => store.about.as_ref().map(|about| desk.sentence(about)),
+        survives_restart => store.survives_restart,
+        operations => list(operations.map(|it| desk.operation(it))),
+        tables => list(tables.map(|table| Link {
                 text: desk.lang.text(&table.title).to_owned(),
                 href: desk.link(Page::Tables, Anchor::of("table", &table.id)),
-            })
-            .collect(),
-        messages: messages.unwrap_or_default(),
-        spec: desk.spec(&store.location),
+            })),
+        messages => messages.unwrap_or_default(),
+        spec => desk.spec(&store.location),
     }
 }
 
 /// Returns the messages with fields for which `key` returns a name, by that name.
-fn messages(
-    desk: Desk<'_, '_>,
-    key: impl Fn(&Row) -> Option<&str>,
-) -> HashMap<String, Vec<MessageView>> {
-    let mut found: HashMap<String, Vec<MessageView>> = HashMap::new();
+fn messages(desk: Desk<'_, '_>, key: impl Fn(&Row) -> Option<&str>) -> HashMap<String, Vec<Value>> {
+    let mut found: HashMap<String, Vec<Value>> = HashMap::new();
     let operations = desk.book.model.operations.iter();
     for (operation, messages) in operations.filter_map(|it| Some((it, it.messages()?))) {
         for &direction in Direction::ALL {
             let body = messages.body(direction);
             for (name, fields) in desk.fields_by(operation, direction, body, &key) {
                 let list = found.entry(name).or_default();
-                list.push(message(desk, operation, direction, fields));
+                list.push(desk.message(operation, direction, fields));
             }
         }
     }
     found
-}
-
-fn message(
-    desk: Desk<'_, '_>,
-    operation: &Operation,
-    direction: Direction,
-    fields: Vec<Link>,
-) -> MessageView {
-    MessageView {
-        operation: desk.operation(operation),
-        side: words::side(operation.kind(), direction, desk.lang),
-        fields,
-    }
 }

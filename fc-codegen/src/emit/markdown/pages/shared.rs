@@ -10,16 +10,8 @@ use fc_spec::model::Lang;
 use fc_spec::model::{
     Answer, Body, BodyState, Change, Code, Direction, Location, Operation, Port, Subject, Text,
 };
-use serde::Serialize;
+use minijinja::{Value, context};
 use std::collections::HashMap;
-
-/// A message and some of its fields.
-#[derive(Debug, Serialize)]
-pub(super) struct MessageView {
-    pub(super) operation: Link,
-    pub(super) side: &'static str,
-    pub(super) fields: Vec<Link>,
-}
 
 /// The model, the language and the page of a view.
 #[derive(Clone, Copy)]
@@ -77,19 +69,20 @@ impl<'b, 'm> Desk<'b, 'm> {
         fields
     }
 
-    pub(super) fn answer(self, answer: &'m Answer) -> AnswerView {
+    /// Returns an answer, without the link to the conflict `except`, which the page already shows.
+    pub(super) fn answer(self, answer: &'m Answer, except: Option<&str>) -> Value {
         let rows = self.rows();
-        AnswerView {
-            ids: answer.ids.iter().map(|id| rows.conflict(id)).collect(),
-            kind: answer.kind.word(self.lang),
-            text: self.sentence(&answer.text),
-            about: self.about(&answer.subject),
-            runtime: answer.runtime,
-            confirmed: answer
-                .confirmed
-                .as_ref()
-                .map(|it| words::confirmed(it, self.lang)),
-            spec: self.spec(&answer.location),
+        let ids = answer.ids.iter().map(|id| rows.conflict(id));
+        let ids = ids.filter(|link| except.is_none_or(|except| link.text != except));
+        let confirmed = answer.confirmed.as_ref();
+        context! {
+            ids => list(ids),
+            kind => answer.kind.word(self.lang),
+            text => self.sentence(&answer.text),
+            about => self.about(&answer.subject),
+            runtime => answer.runtime,
+            confirmed => confirmed.map(|it| words::confirmed(it, self.lang)),
+            spec => self.spec(&answer.location),
         }
     }
 
@@ -116,131 +109,77 @@ impl<'b, 'm> Desk<'b, 'm> {
         linked(self.book, self.page, self.lang.text(text))
     }
 
-    pub(super) fn answers(self, answers: impl IntoIterator<Item = &'m Answer>) -> Vec<AnswerView> {
+    pub(super) fn answers(self, answers: impl IntoIterator<Item = &'m Answer>) -> Vec<Value> {
         let answers = answers.into_iter();
-        answers.map(|answer| self.answer(answer)).collect()
+        answers.map(|answer| self.answer(answer, None)).collect()
     }
 
     /// Returns the answers to exactly this subject.
-    pub(super) fn answers_to(self, subject: &Subject) -> Vec<AnswerView> {
+    pub(super) fn answers_to(self, subject: &Subject) -> Vec<Value> {
         self.answers(self.book.answers_to(subject).iter().copied())
     }
 
     /// Returns changes in their order.
-    pub(super) fn history<'c>(
-        self,
-        changes: impl IntoIterator<Item = &'c Change>,
-    ) -> Vec<HistoryItem> {
-        let item = |change: &Change| HistoryItem {
-            date: change.date.clone(),
-            text: self.sentence(&change.text),
-        };
+    pub(super) fn history<'c>(self, changes: impl IntoIterator<Item = &'c Change>) -> Vec<Value> {
+        let item = |change: &Change| context! { date => &change.date, text => self.sentence(&change.text) };
         changes.into_iter().map(item).collect()
     }
 
-    pub(super) fn ports(self) -> Vec<PortView> {
-        let view = |port: &Port| PortView {
-            number: port.number,
-            role: port.role.word(self.lang),
-            text: self.lang.text(&port.text).to_owned(),
+    /// Returns a message and some of its fields.
+    pub(super) fn message(
+        self,
+        operation: &Operation,
+        direction: Direction,
+        fields: Vec<Link>,
+    ) -> Value {
+        context! {
+            operation => self.operation(operation),
+            side => words::side(operation.kind(), direction, self.lang),
+            fields => list(fields),
+        }
+    }
+
+    pub(super) fn ports(self) -> Vec<Value> {
+        let view = |port: &Port| {
+            context! {
+                number => port.number,
+                role => port.role.word(self.lang),
+                text => self.lang.text(&port.text),
+            }
         };
-        self.book
-            .model
-            .transport
-            .ports
-            .each()
-            .into_iter()
-            .map(view)
-            .collect()
+        let ports = self.book.model.transport.ports.each().into_iter();
+        ports.map(view).collect()
     }
 
     /// Returns an entry for a list of operations.
-    pub(super) fn entry(self, operation: &Operation) -> OperationEntry {
+    pub(super) fn entry(self, operation: &Operation) -> Value {
         let protocol = &self.book.model.protocol;
         let robot = self.lang.text(&protocol.robot.title);
         let app = self.lang.text(&protocol.app.title);
         let state = operation.state();
+        let available = operation.available.as_ref();
+        let available = AvailableView::of(self.book.model, available, self.lang);
         let is_shown = operation.is_from_source() || state != BodyState::Stated;
-        OperationEntry {
-            link: self.operation(operation),
-            name: operation.name.clone(),
-            code: CodeView::new(&operation.code),
-            kind: operation.kind().word(self.lang),
-            effect: operation.effect().map(|effect| effect.word(self.lang)),
-            direction: words::direction(operation.sender, robot, app),
-            state: is_shown.then(|| state.word(self.lang)),
-            deprecated: operation.deprecated.is_some(),
-            available: AvailableView::of(self.book.model, operation.available.as_ref(), self.lang),
+        context! {
+            link => self.operation(operation),
+            name => &operation.name,
+            code => code(&operation.code),
+            kind => operation.kind().word(self.lang),
+            effect => operation.effect().map(|effect| effect.word(self.lang)),
+            direction => words::direction(operation.sender, robot, app),
+            state => is_shown.then(|| state.word(self.lang)),
+            deprecated => operation.deprecated.is_some(),
+            available,
         }
     }
 }
 
-/// An answer to a gap of the source.
-#[derive(Debug, Serialize)]
-pub(super) struct AnswerView {
-    ids: Vec<Link>,
-    kind: &'static str,
-    text: String,
-    /// The subject; `None` on the page of that subject.
-    about: Option<Link>,
-    /// `true` if the answer concerns the runtime, so that no value of the spec changes it.
-    runtime: bool,
-    /// The confirmation.
-    confirmed: Option<String>,
-    spec: Link,
+/// Returns a list for a template.
+pub(super) fn list<T: Into<Value>>(items: impl IntoIterator<Item = T>) -> Value {
+    items.into_iter().map(Into::into).collect()
 }
 
-impl AnswerView {
-    /// Removes the link to a conflict that the page already shows.
-    pub(super) fn without(mut self, id: &str) -> Self {
-        self.ids.retain(|link| link.text != id);
-        self
-    }
-}
-
-/// An entry of a list of operations.
-#[derive(Debug, Serialize)]
-pub(super) struct OperationEntry {
-    link: Link,
-    name: String,
-    code: CodeView,
-    kind: &'static str,
-    effect: Option<&'static str>,
-    direction: String,
-    /// The least certain fact about it; `None` if it is new and has no open facts.
-    state: Option<&'static str>,
-    deprecated: bool,
-    available: Option<AvailableView>,
-}
-
-/// A command code.
-#[derive(Debug, Serialize)]
-pub(super) struct CodeView {
-    /// The spelling of the spec.
-    hex: String,
-    decimal: Option<u16>,
-}
-
-impl CodeView {
-    pub(super) fn new(code: &Code) -> Self {
-        Self {
-            hex: code.spelling.clone(),
-            decimal: code.value,
-        }
-    }
-}
-
-/// A dated sentence.
-#[derive(Debug, Serialize)]
-pub(super) struct HistoryItem {
-    pub(super) date: String,
-    text: String,
-}
-
-/// A TCP port.
-#[derive(Debug, Serialize)]
-pub(super) struct PortView {
-    number: u16,
-    role: &'static str,
-    text: String,
+/// Returns a command code, with the spelling of the spec.
+pub(super) fn code(code: &Code) -> Value {
+    context! { hex => &code.spelling, decimal => code.value }
 }

@@ -1,37 +1,12 @@
 //! The tables of constants.
 
 use super::picture;
-use super::shared::{AnswerView, Desk};
+use super::shared::{Desk, list};
 use crate::emit::markdown::links::{Anchor, Link};
-use crate::emit::markdown::places::Kept;
-use crate::emit::markdown::rows::Row;
 use fc_spec::model::{Subject, Table, TypeDef, TypeShape, Value};
+use minijinja::context;
+use minijinja::value::Serde;
 use serde::Serialize;
-
-#[derive(Debug, Serialize)]
-pub(in crate::emit::markdown) struct TablesView {
-    tables: Vec<TableView>,
-}
-
-#[derive(Debug, Serialize)]
-struct TableView {
-    anchor: String,
-    id: String,
-    title: String,
-    about: String,
-    row_type: Link,
-    kept: Option<Kept>,
-    /// The rows as grids of parts, if the table has this form.
-    picture: Option<String>,
-    /// The keys whose values fit a cell. The picture and the JSON show nested values.
-    columns: Vec<Column>,
-    /// The cells as JSON, in the order of the columns; empty if the row lacks the key.
-    rows: Vec<Vec<String>>,
-    fields: Vec<Row>,
-    json: String,
-    answers: Vec<AnswerView>,
-    spec: Link,
-}
 
 #[derive(Debug, Serialize)]
 struct Column {
@@ -39,19 +14,14 @@ struct Column {
     text: String,
 }
 
-pub(in crate::emit::markdown) fn tables(desk: Desk<'_, '_>) -> TablesView {
-    TablesView {
-        tables: desk
-            .book
-            .model
-            .tables
-            .iter()
-            .map(|table| view(desk, table))
-            .collect(),
+pub(in crate::emit::markdown) fn tables(desk: Desk<'_, '_>) -> minijinja::Value {
+    let tables = desk.book.model.tables.iter();
+    context! {
+        tables => list(tables.map(|table| view(desk, table))),
     }
 }
 
-fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
+fn view(desk: Desk<'_, '_>, table: &Table) -> minijinja::Value {
     let row_type = desk.book.model.types.get(&table.row);
     let columns = columns(desk, table, row_type);
     let cells = |row: &Value| {
@@ -60,27 +30,25 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> TableView {
                 .map(Value::to_string)
                 .unwrap_or_default()
         };
-        columns.iter().map(cell).collect()
+        columns.iter().map(cell).collect::<Vec<_>>()
     };
-    TableView {
-        anchor: Anchor::of("table", &table.id).id(),
-        id: table.id.clone(),
-        title: desk.lang.text(&table.title).to_owned(),
-        about: desk.sentence(&table.about),
-        row_type: Link {
+    context! {
+        anchor => Anchor::of("table", &table.id).id(),
+        id => &table.id,
+        title => desk.lang.text(&table.title),
+        about => desk.sentence(&table.about),
+        row_type => Link {
             text: table.row.to_string(),
             href: desk.page.link(desk.book.place_of_type(row_type)),
         },
-        kept: table.kept.as_deref().map(|name| desk.rows().kept(name)),
-        picture: picture::picture(desk, table, row_type),
-        rows: table.rows.iter().map(cells).collect(),
-        columns,
-        fields: desk
-            .rows()
-            .of_type(row_type, Anchor::of("table", &table.id)),
-        json: Value::Array(table.rows.clone()).pretty(),
-        answers: desk.answers_to(&Subject::Table(table.id.clone())),
-        spec: desk.spec(&table.location),
+        kept => table.kept.as_deref().map(|name| desk.rows().kept(name)),
+        picture => picture::picture(desk, table, row_type),
+        rows => list(table.rows.iter().map(cells)),
+        columns => Serde(columns),
+        fields => Serde(desk.rows().of_type(row_type, Anchor::of("table", &table.id))),
+        json => Value::Array(table.rows.clone()).pretty(),
+        answers => desk.answers_to(&Subject::Table(table.id.clone())),
+        spec => desk.spec(&table.location),
     }
 }
 
