@@ -309,20 +309,15 @@ pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
         places.add(kind, None, &item.name, *origin);
     }
     types(&mut places, draft);
-    places.keyed(grammar::Constants::TABLE, None, &draft.tables);
-    places.keyed(grammar::Entity::TABLE, None, &draft.entities);
-    places.keyed(grammar::CoordinateSystem::TABLE, None, &draft.coordinates);
-    places.keyed(grammar::Store::TABLE, None, &draft.stores);
-    let words = &draft.availability;
-    places.keyed(grammar::Audience::TABLE, None, &words.audiences);
-    places.keyed(grammar::Machine::TABLE, None, &words.hardware);
-    places.keyed(grammar::Series::TABLE, None, &words.releases);
-    places.keyed(grammar::Term::TABLE, None, &draft.glossary);
-    places.keyed(grammar::Waiver::TABLE, None, &draft.waivers);
+    for (table, origin) in &draft.declared {
+        if !AnyOperation::KINDS.contains(&table.name) {
+            let name = origin.key.as_str().unwrap_or_default();
+            places.add(table, None, name, *origin);
+        }
+    }
     places.named_by(grammar::Section::TABLE, &draft.sections, |_, it| {
         it.section.to_string()
     });
-    places.keyed(grammar::Conflict::TABLE, None, &draft.conflicts);
     places.named_by(grammar::Change::TABLE, &draft.changes, |at, _| {
         at.to_string()
     });

@@ -5,16 +5,15 @@
 
 use crate::diagnostic::Faults;
 use crate::language::Occurrence;
-use crate::language::grammar::{Form, Key};
+use crate::language::grammar::{self, Form, Key};
 use crate::model::{
-    Ack, Answer, Availability, ByteOrder, CallDefaults, Change, CodeRange, Conflict,
-    CoordinateSystem, Declared, Encoding, Entity, EnvelopeField, FrameKind, Group, HeaderField,
-    JsonRule, Languages, Limits, MissingSection, Operation, Protocol, Question, ResultCode,
-    RetiredCode, Store, Table, Term, Text, Transport, TypeDef, Waiver,
+    Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
+    FrameKind, Group, HeaderField, Languages, Limits, MissingSection, Operation, Partial, Protocol,
+    ResultCode, RetiredCode, Table, Term, Text, Transport, TypeDef, Waiver,
 };
 use crate::source::Span;
 use crate::syntax::Node;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// The nodes of a file that define an item.
 #[derive(Clone, Copy, Debug)]
@@ -97,30 +96,6 @@ pub(crate) struct EnvelopeDraft<'a> {
     pub response: Vec<Sourced<'a, EnvelopeField>>,
 }
 
-/// `availability:`.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct AvailabilityDraft<'a> {
-    /// `true` if `availability:` is malformed, so that the declared words are unknown.
-    pub is_broken: bool,
-    pub audiences: Vec<Sourced<'a, Declared>>,
-    pub hardware: Vec<Sourced<'a, Declared>>,
-    pub releases: Vec<Sourced<'a, Declared>>,
-}
-
-impl AvailabilityDraft<'_> {
-    /// Returns the declared words without their places.
-    pub fn model(self) -> Availability {
-        let items = |placed: Vec<Sourced<'_, Declared>>| {
-            placed.into_iter().map(|placed| placed.item).collect()
-        };
-        Availability {
-            audiences: items(self.audiences),
-            hardware: items(self.hardware),
-            releases: items(self.releases),
-        }
-    }
-}
-
 /// An answer and the mapping around it.
 #[derive(Clone, Debug)]
 pub(crate) struct AnswerDraft<'a> {
@@ -137,40 +112,34 @@ pub(crate) struct AnswerDraft<'a> {
 pub(crate) struct Draft<'a> {
     /// Languages that each text requires.
     pub texts: Languages,
+    /// The sections with a valid shape, by name.
+    pub valid: BTreeMap<&'static str, Origin<'a>>,
+    /// The names of the sections with an invalid shape.
+    pub invalid: BTreeSet<&'static str>,
     pub protocol: Option<Sourced<'a, Protocol>>,
     pub transport: Option<Sourced<'a, Transport>>,
     pub frame: Option<FrameDraft<'a>>,
-    /// `json:`.
-    pub json: Option<BTreeMap<JsonRule, Text>>,
     pub envelope: Option<EnvelopeDraft<'a>>,
-    /// Place of `results:`.
-    pub results_place: Option<Origin<'a>>,
     pub results: Vec<Sourced<'a, ResultCode>>,
     pub calls: Option<Sourced<'a, CallDefaults>>,
     /// `ack:`.
     pub default_ack: Option<Ack>,
     pub limits: Option<Sourced<'a, Limits>>,
-    /// `true` if `codes:` exists and is valid.
-    pub codes_known: bool,
     pub ranges: Vec<Sourced<'a, CodeRange>>,
     pub retired: Vec<Sourced<'a, RetiredCode>>,
     pub groups: Vec<Sourced<'a, Group>>,
     pub operations: Vec<Sourced<'a, Operation>>,
     pub types: Vec<TypeDraft<'a>>,
     pub tables: Vec<Sourced<'a, Table>>,
-    pub entities: Vec<Sourced<'a, Entity>>,
-    pub coordinates: Vec<Sourced<'a, CoordinateSystem>>,
-    pub stores: Vec<Sourced<'a, Store>>,
-    pub availability: AvailabilityDraft<'a>,
+    /// The sections whose items need no origin.
+    pub plain: Partial,
+    /// The named things of sections and of `availability`, with the mappings that declare them.
+    pub declared: Vec<(&'static grammar::Table, Origin<'a>)>,
     pub glossary: Vec<Sourced<'a, Term>>,
     pub waivers: Vec<Sourced<'a, Waiver>>,
     pub sections: Vec<Sourced<'a, MissingSection>>,
-    /// `true` if `sections:` exists and is valid.
-    pub sections_known: bool,
     pub conflicts: Vec<Sourced<'a, Conflict>>,
     pub answers: Vec<AnswerDraft<'a>>,
-    /// Questions from answers and lost facts. A later step fills them in.
-    pub questions: Vec<Question>,
     /// `true` if an answer is malformed or has neither `ids` nor `about`.
     pub broken_answers: bool,
     pub changes: Vec<Sourced<'a, Change>>,

@@ -62,6 +62,6 @@ fn read<T>(
     let mut draft = lower::lower(&sections, trees.sources(), texts);
     draft.note_doubtful(faults);
     resolve::resolve(&mut draft);
-    draft.questions = questions::questions(&draft, trees.sources());
+    draft.plain.questions = questions::questions(&draft, trees.sources());
     then(draft, whole, faults)
 }

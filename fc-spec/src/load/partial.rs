@@ -60,7 +60,6 @@ pub(super) fn build(draft: Draft<'_>, whole: bool, sound: bool) -> Loaded {
         protocol: draft.protocol.map(|it| it.item),
         transport: draft.transport.map(|it| it.item),
         frame,
-        json: draft.json,
         envelope,
         results: items(draft.results),
         calls: draft.calls.map(|it| it.item),
@@ -71,17 +70,13 @@ pub(super) fn build(draft: Draft<'_>, whole: bool, sound: bool) -> Loaded {
         operations: items(draft.operations),
         types: Types::new(shrunk(types)),
         tables: items(draft.tables),
-        entities: items(draft.entities),
-        coordinates: items(draft.coordinates),
-        stores: items(draft.stores),
-        availability: draft.availability.model(),
         glossary: items(draft.glossary),
         waivers: items(draft.waivers),
         missing_sections: items(draft.sections),
         conflicts: items(draft.conflicts),
         answers: shrunk(draft.answers.into_iter().map(|answer| answer.item)),
-        questions: draft.questions,
         changes: items(draft.changes),
+        ..draft.plain
     };
     let missing = link(
         &mut partial.types,

@@ -167,7 +167,7 @@ pub fn settle(sources: &Sources, texts: Languages, said: &Said) -> Result<Settle
 }
 
 fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settled, SettleError> {
-    let question = find(&draft.questions, &said.id)?;
+    let question = find(&draft.plain.questions, &said.id)?;
     if let Some(Confirmation { by, date, .. }) = &question.confirmed {
         return Err(SettleError::Settled {
             id: question.id.clone(),

@@ -46,9 +46,9 @@ pub use body::{
 pub use cadence::{Cadence, Step};
 pub use condition::{Asked, Condition};
 pub use constraint::{Argument, Constraint, Constraints, Judged};
-pub use coordinates::{CoordinateSystem, Store};
+pub use coordinates::*;
 pub use dump::DumpError;
-pub use entity::Entity;
+pub use entity::*;
 pub use frame::{Encoding, Frame, FrameKind, FrameKinds, HeaderField, HeaderType};
 pub use glossary::Term;
 pub use operation::{

@@ -34,7 +34,7 @@ macro_rules! sections {
         ///
         /// It has passed no checks, so no product can be made from it. Types may contain themselves, and two operations may have the same
         /// code.
-        #[derive(Clone, Debug)]
+        #[derive(Clone, Debug, Default)]
         #[allow(missing_docs, reason = "they are those of `Model`")]
         pub struct Partial {
             $(pub $once: Option<$Once>,)+

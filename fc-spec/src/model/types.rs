@@ -16,7 +16,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Deref;
 
 /// Every named type of a model, in the order in which they were written.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Types(Vec<TypeDef>);
 

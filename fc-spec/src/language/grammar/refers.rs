@@ -1,14 +1,16 @@
 //! References: values that name a thing of the spec.
 
-use super::available::{Audience, Machine, Series};
-use super::common::Conflict;
+use super::available::{AVAILABILITY, Audience, Machine, Series};
+use super::common::{COMMON, Conflict};
 use super::coordinates::{CoordinateSystem, Store};
 use super::entity::Entity;
-use super::field::{Enum, EnumValue, Struct};
+use super::field::{Enum, EnumValue, FIELD, Struct};
+use super::file::FILE;
 use super::form::{ConflictId, Form, Name, ResultNumber, TypeName};
-use super::kind::Kind;
+use super::kind::{Kind, Table};
 use super::operation::{Command, Group, Report, Stream};
 use super::wire::ResultCode;
+use crate::diagnostic::FaultCode;
 use crate::syntax::Node;
 use std::marker::PhantomData;
 
@@ -69,3 +71,71 @@ named! {
 
 /// The parts of the language that can declare a type.
 pub(crate) const TYPES: &[&str] = &[Struct::NAME, Enum::NAME, super::field::OneOf::NAME];
+
+/// A kind of thing that the spec declares by name, and that must have a reference.
+pub(crate) struct Declared {
+    /// The mapping that declares one.
+    pub table: &'static Table,
+    /// The part of a spec that declares them.
+    pub home: Home,
+    /// The error of a reference to an unknown one.
+    pub unknown: FaultCode,
+    /// The error of one without a reference.
+    pub unused: FaultCode,
+}
+
+/// The part of a spec that declares things.
+#[derive(Clone, Copy)]
+pub(crate) enum Home {
+    /// The sections of operations.
+    Operations,
+    /// A section; `by` is the key of the references.
+    Section { key: &'static str, by: &'static str },
+    /// A key of `availability`.
+    Availability(&'static str),
+}
+
+impl Declared {
+    const fn available(table: &'static Table, key: &'static str) -> Self {
+        Self {
+            table,
+            home: Home::Availability(key),
+            unknown: FaultCode::UnknownAvailability,
+            unused: FaultCode::UnusedAvailability,
+        }
+    }
+}
+
+/// The kinds of declared things, except operations and types.
+pub(crate) static DECLARED: [Declared; 6] = [
+    Declared {
+        table: Entity::TABLE,
+        home: Home::Section {
+            key: FILE.entities.name,
+            by: FIELD.refers.name,
+        },
+        unknown: FaultCode::UnknownEntity,
+        unused: FaultCode::UnusedEntity,
+    },
+    Declared {
+        table: CoordinateSystem::TABLE,
+        home: Home::Section {
+            key: FILE.coordinates.name,
+            by: FIELD.coordinates.name,
+        },
+        unknown: FaultCode::UnknownCoordinates,
+        unused: FaultCode::UnusedCoordinates,
+    },
+    Declared {
+        table: Store::TABLE,
+        home: Home::Section {
+            key: FILE.stores.name,
+            by: COMMON.kept.name,
+        },
+        unknown: FaultCode::UnknownStore,
+        unused: FaultCode::UnusedStore,
+    },
+    Declared::available(Audience::TABLE, AVAILABILITY.audiences.name),
+    Declared::available(Machine::TABLE, AVAILABILITY.hardware.name),
+    Declared::available(Series::TABLE, AVAILABILITY.releases.name),
+];

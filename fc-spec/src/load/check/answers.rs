@@ -1,7 +1,7 @@
 //! Checks the parts that the source lacks, conflicts and their answers.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::language::grammar::{ANSWER, COMMAND, OPERATION, REPORT, SOURCE};
+use crate::language::grammar::{ANSWER, COMMAND, FILE, OPERATION, REPORT, SOURCE};
 use crate::language::scalar::small_int;
 use crate::load::draft::{Draft, Sourced};
 use crate::model::{BodyState, Direction, Fact, Kind, Operation};
@@ -160,7 +160,8 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
             sections.as_sequence().is_some() && items.all(|item| small_int::<u16>(item).is_some())
         })
     };
-    if !draft.sections_known || !draft.operations.iter().all(says_sections) {
+    if !draft.valid.contains_key(FILE.sections.name) || !draft.operations.iter().all(says_sections)
+    {
         return;
     }
     let mut claimed: BTreeMap<u16, Span> = BTreeMap::new();

@@ -3,7 +3,7 @@
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{AVAILABLE, COMMON, FIELD};
-use crate::load::draft::{Draft, Sourced};
+use crate::load::draft::Draft;
 use crate::model::{Available, Declared, Scalar, Text, TypeShape};
 use crate::names;
 use crate::source::Span;
@@ -68,13 +68,13 @@ fn named<'a>(nodes: impl Iterator<Item = Node<'a>>) -> Named<'a> {
     names.filter(|(name, _)| names::is_snake(name)).collect()
 }
 
-fn names_of<'d>(declared: &'d [Sourced<'_, Declared>]) -> HashSet<&'d str> {
-    declared.iter().map(|it| it.item.name.as_str()).collect()
+fn names_of(declared: &[Declared]) -> HashSet<&str> {
+    declared.iter().map(|it| it.name.as_str()).collect()
 }
 
 /// Checks that no limit is empty or names every audience.
 pub(super) fn check_limits(draft: &Draft<'_>, faults: &mut Faults) {
-    let all = names_of(&draft.availability.audiences);
+    let all = names_of(&draft.plain.availability.audiences);
     for Limit {
         available, node, ..
     } in limits(draft)
@@ -140,7 +140,7 @@ pub(super) fn check_within(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         };
         for (name, span) in named(AVAILABLE.r#for.items(limit.node)) {
-            if outer.is_for(name) || !names_of(&draft.availability.audiences).contains(name) {
+            if outer.is_for(name) || !names_of(&draft.plain.availability.audiences).contains(name) {
                 continue;
             }
             let message = text!(
@@ -160,8 +160,8 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
     let has = |available: Option<&Available>, audience: &str| {
         available.is_none_or(|available| available.is_for(audience))
     };
-    for audience in &draft.availability.audiences {
-        let name = audience.item.name.as_str();
+    for audience in &draft.plain.availability.audiences {
+        let name = audience.name.as_str();
         let mut report = |span: Span, what: Text| {
             let message = text!(
                 "受众 `{name}` 没有{what}",

@@ -1,7 +1,7 @@
 //! Checks codes of operations and their ranges.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::language::grammar::{CODE, Group, Named, OPERATION, RANGE, RETIRED, SOURCE};
+use crate::language::grammar::{CODE, FILE, Group, Named, OPERATION, RANGE, RETIRED, SOURCE};
 use crate::load::draft::{Draft, Sourced};
 use crate::model::{CodeRange, Kind, Operation, RangeUse, Text, next_code};
 use crate::source::Span;
@@ -154,7 +154,7 @@ fn belong_together(one: &Operation, other: &Operation) -> bool {
 
 /// Checks that every code lies in a range with a suitable purpose.
 pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
-    if !draft.codes_known {
+    if !draft.valid.contains_key(FILE.codes.name) {
         return;
     }
     for operation in &draft.operations {

@@ -4,18 +4,18 @@ use super::iter::called;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::Occurrence;
 use crate::language::grammar::{
-    ACCEPTED, AVAILABILITY, AnyOperation, Audience, COMMON, Command, CoordinateSystem, Entity,
-    FIELD, FILE, Machine, Named, Report, STREAM, Series, Store,
+    ACCEPTED, AnyOperation, Audience, Command, DECLARED, Declared, Entity, FILE, Home, Named,
+    Report, STREAM,
 };
-use crate::load::draft::{Draft, Sourced};
-use crate::model::{Declared, Kind, Text};
+use crate::load::draft::Draft;
+use crate::model::{Kind, Text};
 use crate::source::Span;
 use crate::text;
 use std::collections::HashSet;
 
 /// The things that references of one kind may name.
 struct Things<'d> {
-    /// The kind of the references in the grammar.
+    /// The parts of the language that can declare them.
     kinds: &'static [&'static str],
     /// The name of the kind in a sentence.
     what: Text,
@@ -26,21 +26,12 @@ struct Things<'d> {
     unused: Option<FaultCode>,
 }
 
-/// The part of a spec that declares things.
-#[derive(Clone, Copy)]
-enum Home {
-    /// The sections of operations.
-    Operations,
-    /// A section; `by` is the key of the references.
-    Section { key: &'static str, by: &'static str },
-    /// A key of `availability`.
-    Availability(&'static str),
-}
-
 /// Checks that every referenced name is declared.
 pub(super) fn check_declared(draft: &Draft<'_>, faults: &mut Faults) {
     for things in &things(draft) {
-        if draft.availability.is_broken && matches!(things.home, Home::Availability(_)) {
+        if draft.invalid.contains(FILE.availability.name)
+            && matches!(things.home, Home::Availability(_))
+        {
             continue;
         }
         let known = things.names();
@@ -202,55 +193,30 @@ fn misfit(draft: &Draft<'_>, occurrence: &Occurrence<'_>, name: &str) -> Option<
 
 /// Returns all things that references may name, except types.
 fn things<'d>(draft: &'d Draft<'_>) -> Vec<Things<'d>> {
-    let words = &draft.availability;
-    let command = text!("指令", "command");
-    let report = text!("上报", "report");
-    let operation = text!("接口", "operation");
-    let audience = text!("受众", "audience");
-    let machine = text!("机型", "line of machines");
-    let series = text!("版本系列", "series of releases");
-    vec![
-        operations::<Command>(draft, command, |kind| kind == Kind::Command),
-        operations::<Report>(draft, report, |kind| kind == Kind::Report),
-        operations::<AnyOperation>(draft, operation, |_| true),
-        section::<Entity>(
-            text!("实体", "entity"),
-            [FILE.entities.name, FIELD.refers.name],
-            names(&draft.entities, |it| &it.name),
-            [FaultCode::UnknownEntity, FaultCode::UnusedEntity],
-        ),
-        section::<CoordinateSystem>(
-            text!("坐标系", "coordinate system"),
-            [FILE.coordinates.name, FIELD.coordinates.name],
-            names(&draft.coordinates, |it| &it.name),
-            [FaultCode::UnknownCoordinates, FaultCode::UnusedCoordinates],
-        ),
-        section::<Store>(
-            text!("存储位置", "store"),
-            [FILE.stores.name, COMMON.kept.name],
-            names(&draft.stores, |it| &it.name),
-            [FaultCode::UnknownStore, FaultCode::UnusedStore],
-        ),
-        available::<Audience>(audience, AVAILABILITY.audiences.name, &words.audiences),
-        available::<Machine>(machine, AVAILABILITY.hardware.name, &words.hardware),
-        available::<Series>(series, AVAILABILITY.releases.name, &words.releases),
-    ]
+    let mut things = vec![
+        operations::<Command>(draft, text!("指令", "command"), |kind| {
+            kind == Kind::Command
+        }),
+        operations::<Report>(draft, text!("上报", "report"), |kind| {
+            kind == Kind::Report
+        }),
+        operations::<AnyOperation>(draft, text!("接口", "operation"), |_| true),
+    ];
+    things.extend(DECLARED.iter().map(|of| declared(draft, of)));
+    things
 }
 
-/// Returns the things of a section: `key` declares them, and `by` refers to them.
-fn section<'d, T: Named>(
-    what: Text,
-    [key, by]: [&'static str; 2],
-    declared: Vec<(&'d str, Span)>,
-    [unknown, unused]: [FaultCode; 2],
-) -> Things<'d> {
+fn declared<'d>(draft: &'d Draft<'_>, of: &'static Declared) -> Things<'d> {
+    let things = draft.declared.iter();
+    let things = things.filter(|(table, _)| table.name == of.table.name);
+    let names = things.map(|(_, it)| (it.key.as_str().unwrap_or_default(), it.name()));
     Things {
-        kinds: T::KINDS,
-        what,
-        home: Home::Section { key, by },
-        declared,
-        unknown,
-        unused: Some(unused),
+        kinds: std::slice::from_ref(&of.table.name),
+        what: text!("{zh}", "{en}", zh = of.table.name_zh, en = of.table.name),
+        home: of.home,
+        declared: names.collect(),
+        unknown: of.unknown,
+        unused: Some(of.unused),
     }
 }
 
@@ -259,38 +225,15 @@ fn operations<'d, T: Named>(
     what: Text,
     fits: fn(Kind) -> bool,
 ) -> Things<'d> {
-    let declared = draft.operations.iter();
-    let declared = declared.filter(|it| fits(it.item.kind()));
+    let operations = draft.operations.iter();
+    let operations = operations.filter(|it| fits(it.item.kind()));
+    let names = operations.map(|it| (it.item.name.as_str(), it.origin.name()));
     Things {
         kinds: T::KINDS,
         what,
         home: Home::Operations,
-        declared: declared
-            .map(|it| (it.item.name.as_str(), it.origin.name()))
-            .collect(),
+        declared: names.collect(),
         unknown: FaultCode::UnknownOperation,
         unused: None,
     }
-}
-
-fn available<'d, T: Named>(
-    what: Text,
-    key: &'static str,
-    declared: &'d [Sourced<'_, Declared>],
-) -> Things<'d> {
-    Things {
-        kinds: T::KINDS,
-        what,
-        home: Home::Availability(key),
-        declared: names(declared, |it| &it.name),
-        unknown: FaultCode::UnknownAvailability,
-        unused: Some(FaultCode::UnusedAvailability),
-    }
-}
-
-fn names<'d, T>(sourced: &'d [Sourced<'_, T>], name: fn(&T) -> &String) -> Vec<(&'d str, Span)> {
-    let sourced = sourced.iter();
-    sourced
-        .map(|it| (name(&it.item).as_str(), it.origin.name()))
-        .collect()
 }

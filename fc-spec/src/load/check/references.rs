@@ -3,7 +3,7 @@
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{
-    Constants, DEPRECATED, FIELD, Named, OPERATION, ResultCode, Struct,
+    Constants, DEPRECATED, FIELD, FILE, Named, OPERATION, ResultCode, Struct,
 };
 use crate::language::scalar;
 use crate::load::draft::{Draft, Origin};
@@ -204,7 +204,7 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// Checks that the error codes of an operation exist.
 pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
-    if draft.results_place.is_none() {
+    if !draft.valid.contains_key(FILE.results.name) {
         return;
     }
     for (occurrence, _) in draft.references_to(ResultCode::KINDS) {

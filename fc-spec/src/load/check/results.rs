@@ -3,7 +3,7 @@
 use super::frame::check_each_once;
 use super::names::check_distinct;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::language::grammar::{ERROR, OPERATION, RESULT};
+use crate::language::grammar::{ERROR, FILE, OPERATION, RESULT};
 use crate::load::draft::Draft;
 use crate::model::ResultRole;
 use crate::syntax::Node;
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 /// Checks that the runtime has a result code for each response that it creates.
 pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
-    let Some(origin) = draft.results_place else {
+    let Some(&origin) = draft.valid.get(FILE.results.name) else {
         return;
     };
     let used = draft

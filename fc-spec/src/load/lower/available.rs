@@ -2,30 +2,28 @@
 
 use super::Lowering;
 use crate::language::grammar::{AVAILABILITY, AVAILABLE, COMMON, both_languages as text};
-use crate::load::draft::{Origin, Sourced};
-use crate::model::{Available, Declared};
+use crate::load::draft::Origin;
+use crate::model::{Availability, Available, Declared};
 use crate::syntax::{Entries, Entry, Node};
 use std::collections::BTreeMap;
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn availability(&mut self, origin: Origin<'a>) {
         let node = origin.node;
-        let (audiences, hardware) = (AVAILABILITY.audiences, AVAILABILITY.hardware);
-        self.draft.availability.audiences = self.declared(audiences.get(node));
-        self.draft.availability.hardware = self.declared(hardware.get(node));
-        self.draft.availability.releases = self.declared(AVAILABILITY.releases.get(node));
+        self.draft.plain.availability = Availability {
+            audiences: self.words(AVAILABILITY.audiences.get(node)),
+            hardware: self.words(AVAILABILITY.hardware.get(node)),
+            releases: self.words(AVAILABILITY.releases.get(node)),
+        };
     }
 
-    fn declared(&self, entries: Entries<'a>) -> Vec<Sourced<'a, Declared>> {
-        let declared = entries.map(|Entry { key, value: node }| Sourced {
-            item: Declared {
-                name: key.as_str().unwrap_or_default().to_owned(),
-                title: text(node),
-                location: self.location(key.span()),
-            },
-            origin: Origin { key, node },
+    fn words(&self, entries: Entries<'a>) -> Vec<Declared> {
+        let words = entries.map(|Entry { key, value: node }| Declared {
+            name: key.as_str().unwrap_or_default().to_owned(),
+            title: text(node),
+            location: self.location(key.span()),
         });
-        declared.collect()
+        words.collect()
     }
 }
 

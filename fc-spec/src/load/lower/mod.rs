@@ -17,7 +17,9 @@ pub(super) use wire::envelope_type_fits;
 
 use super::draft::{AnswerDraft, Draft, Origin};
 use super::section::Section;
-use crate::language::grammar::{ANSWER, CHANGE, COMMON, CONFIRMED, FILE, both_languages};
+use crate::language::grammar::{
+    ANSWER, Availability, CHANGE, COMMON, CONFIRMED, FILE, File, Kind, both_languages,
+};
 use crate::model::{Answer, Confirmation, Governed, Languages, Location, Subject};
 use crate::names::is_conflict_id;
 use crate::source::{Sources, Span};
@@ -81,21 +83,18 @@ struct Lowering<'a, 's> {
     entry: String,
 }
 
+/// The name of a section, and the method that lowers it or one of its entries.
+type Lower<'a, S> = (&'static str, fn(&mut S, Origin<'a>));
+
 impl<'a> Lowering<'a, '_> {
     fn section(&mut self, section: &Section<'a>) {
-        type Lower<'a, S> = (&'static str, fn(&mut S, Origin<'a>));
         let (name, origin) = (section.name, section.origin);
-        let each: [Lower<'a, Self>; 12] = [
+        let each: [Lower<'a, Self>; 7] = [
             (FILE.commands.name, Self::command),
             (FILE.reports.name, Self::report),
             (FILE.streams.name, Self::stream),
             (FILE.types.name, Self::type_def),
             (FILE.tables.name, Self::table),
-            (FILE.entities.name, Self::entity),
-            (FILE.coordinates.name, Self::coordinate_system),
-            (FILE.stores.name, Self::store),
-            (FILE.glossary.name, Self::term),
-            (FILE.waivers.name, Self::waiver),
             (FILE.conflicts.name, Self::conflict),
             (FILE.sections.name, Self::missing_section),
         ];
@@ -118,11 +117,14 @@ impl<'a> Lowering<'a, '_> {
             (FILE.codes.name, Self::codes),
         ];
         let is_read = |(key, _): &&Lower<'a, Self>| *key == name;
-        let each = each.iter().find(is_read);
+        let each = each.iter().chain(&Self::THINGS).find(is_read);
         let clean = clean.iter().filter(|_| section.clean);
         let whole = whatever.iter().chain(clean).find(is_read);
         if each.or(whole).is_some() {
             self.draft.references.extend(&section.references);
+            if let Some(key) = File::TABLE.key(name) {
+                self.declare(&key.kind, origin.node);
+            }
         }
         if let Some((_, lower)) = each {
             for Entry { key, value: node } in origin.node.entries() {
@@ -134,8 +136,35 @@ impl<'a> Lowering<'a, '_> {
         if let Some((_, lower)) = whole {
             lower(self, origin);
         }
-        self.draft.availability.is_broken |= name == FILE.availability.name && !section.clean;
-        self.draft.sections_known |= name == FILE.sections.name && section.clean;
+        if section.clean {
+            self.draft.valid.insert(name, origin);
+        } else {
+            self.draft.invalid.insert(name);
+        }
+    }
+
+    /// Records the named things that a section declares.
+    fn declare(&mut self, kind: &'static Kind, node: Node<'a>) {
+        match kind {
+            Kind::Entries {
+                key: Kind::Name | Kind::ConflictId | Kind::Text,
+                value: Kind::Map(table),
+                ..
+            } => {
+                let things = node.entries();
+                let things = things.map(|Entry { key, value: node }| Origin { key, node });
+                let things = things.map(|origin| (*table, origin));
+                self.draft.declared.extend(things);
+            }
+            Kind::Map(table) if table.name == Availability::NAME => {
+                for entry in node.entries() {
+                    if let Some(key) = table.key(entry.name()) {
+                        self.declare(&key.kind, entry.value);
+                    }
+                }
+            }
+            _ => {}
+        }
     }
 
     fn changes(&mut self, origin: Origin<'a>) {

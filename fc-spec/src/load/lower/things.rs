@@ -1,31 +1,42 @@
 //! Lowers things with a name and a text: entities, coordinate systems, stores, terms, waivers.
 
-use super::Lowering;
-use crate::language::grammar::{COMMON, OTHER_FORMS, STORE, TERM, WAIVER, both_languages as text};
+use super::{Lower, Lowering};
+use crate::language::grammar::{
+    COMMON, FILE, OTHER_FORMS, STORE, TERM, WAIVER, both_languages as text,
+};
 use crate::load::draft::{Origin, Sourced};
 use crate::model::{Aliases, CoordinateSystem, Entity, Store, Term, Waiver};
 
 impl<'a> Lowering<'a, '_> {
-    pub(super) fn entity(&mut self, origin: Origin<'a>) {
+    /// The sections of things.
+    pub(super) const THINGS: [Lower<'a, Self>; 5] = [
+        (FILE.entities.name, Self::entity),
+        (FILE.coordinates.name, Self::coordinate_system),
+        (FILE.stores.name, Self::store),
+        (FILE.glossary.name, Self::term),
+        (FILE.waivers.name, Self::waiver),
+    ];
+
+    fn entity(&mut self, origin: Origin<'a>) {
         let item = Entity {
             name: origin.key.as_str().unwrap_or_default().to_owned(),
             title: text(origin.node),
             location: self.location(origin.name()),
         };
-        self.draft.entities.push(Sourced { item, origin });
+        self.draft.plain.entities.push(item);
     }
 
-    pub(super) fn coordinate_system(&mut self, origin: Origin<'a>) {
+    fn coordinate_system(&mut self, origin: Origin<'a>) {
         let item = CoordinateSystem {
             name: origin.key.as_str().unwrap_or_default().to_owned(),
             title: text(origin.node),
             about: COMMON.about.read(origin.node),
             location: self.location(origin.name()),
         };
-        self.draft.coordinates.push(Sourced { item, origin });
+        self.draft.plain.coordinates.push(item);
     }
 
-    pub(super) fn store(&mut self, origin: Origin<'a>) {
+    fn store(&mut self, origin: Origin<'a>) {
         let item = Store {
             name: origin.key.as_str().unwrap_or_default().to_owned(),
             title: text(origin.node),
@@ -33,10 +44,10 @@ impl<'a> Lowering<'a, '_> {
             survives_restart: STORE.survives_restart.read(origin.node),
             location: self.location(origin.name()),
         };
-        self.draft.stores.push(Sourced { item, origin });
+        self.draft.plain.stores.push(item);
     }
 
-    pub(super) fn term(&mut self, origin: Origin<'a>) {
+    fn term(&mut self, origin: Origin<'a>) {
         let node = origin.node;
         let also = TERM.also.of(node);
         let word = text(node);
@@ -53,7 +64,7 @@ impl<'a> Lowering<'a, '_> {
         self.draft.glossary.push(Sourced { item, origin });
     }
 
-    pub(super) fn waiver(&mut self, origin: Origin<'a>) {
+    fn waiver(&mut self, origin: Origin<'a>) {
         let item = Waiver {
             id: origin.key.as_str().unwrap_or_default().to_owned(),
             reason: text(origin.node),

@@ -143,7 +143,7 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn json(&mut self, origin: Origin<'a>) {
         let rules = JsonRule::ALL.iter();
         let said = rules.filter_map(|rule| Some((*rule, text(origin.node.get(rule.name())?))));
-        self.draft.json = Some(said.collect());
+        self.draft.plain.json = Some(said.collect());
     }
 
     pub(super) fn envelope(&mut self, origin: Origin<'a>) {
@@ -180,7 +180,6 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn results(&mut self, origin: Origin<'a>) {
-        self.draft.results_place = Some(origin);
         for origin in places(origin.node.entries()) {
             let node = origin.node;
             let Some(code) = scalar::small_int(origin.key) else {
@@ -252,7 +251,6 @@ impl<'a> Lowering<'a, '_> {
         }
         self.draft.ranges.sort_by_key(|range| range.item.first);
         self.draft.retired.sort_by_key(|retired| retired.item.code);
-        self.draft.codes_known = true;
         self.answers(origin.node, &Subject::Codes);
     }
 
