@@ -1,11 +1,12 @@
-//! A new constraint changes few handwritten files. The patch of a toy constraint in `tests/touch` shows which.
+//! A new constraint and a new section change few handwritten files. The patches of toys in `tests/touch` show which.
 
 use crate::docs_support::project;
 use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
-const PATCH: &str = "fc-codegen/tests/touch/multiple_of.patch";
+const CONSTRAINT: &str = "fc-codegen/tests/touch/multiple_of.patch";
+const SECTION: &str = "fc-codegen/tests/touch/section.patch";
 
 /// The runtimes. Each may change in one file.
 const RUNTIMES: [&str; 5] = [
@@ -16,19 +17,22 @@ const RUNTIMES: [&str; 5] = [
     "stubs/cpp/",
 ];
 
-/// The most other files that the patch may change. This number may only fall.
+/// The most other files that a constraint may change. This number may only fall.
 const MOST_OTHERS: usize = 6;
 
-/// Returns the files that the patch changes.
-fn touched() -> BTreeSet<String> {
-    let patch = fs::read_to_string(project().join(PATCH)).expect("the patch");
+/// The most files that a section may change. This number may only fall.
+const MOST_OF_SECTION: usize = 5;
+
+/// Returns the files that a patch changes.
+fn touched(patch: &str) -> BTreeSet<String> {
+    let patch = fs::read_to_string(project().join(patch)).expect("the patch");
     let files = patch.lines().filter_map(|line| line.strip_prefix("+++ b/"));
     files.map(str::to_owned).collect()
 }
 
 #[test]
 fn a_constraint_changes_few_files() {
-    let mut others = touched();
+    let mut others = touched(CONSTRAINT);
     for runtime in RUNTIMES {
         let (own, rest) = others.into_iter().partition(|it| it.starts_with(runtime));
         let own: BTreeSet<String> = own;
@@ -41,29 +45,39 @@ fn a_constraint_changes_few_files() {
 }
 
 #[test]
-fn the_patch_of_the_constraint_fits() {
-    let root = project();
-    let parent = root.parent().expect("the root of the project has a parent");
-    let output = Command::new("git")
-        .args(["apply", "--check", PATCH])
-        .current_dir(&root)
-        // Outside of a repository, git takes paths relative to the current directory.
-        .env("GIT_CEILING_DIRECTORIES", parent)
-        .output()
-        .expect("git");
-    let problem = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{problem}");
+fn a_section_changes_few_files() {
+    let touched = touched(SECTION);
+    assert!(touched.len() <= MOST_OF_SECTION, "{touched:#?}");
 }
 
 #[test]
-fn the_table_of_contributing_lists_the_files() {
+fn the_patches_fit() {
+    let root = project();
+    let parent = root.parent().expect("the root of the project has a parent");
+    for patch in [CONSTRAINT, SECTION] {
+        let output = Command::new("git")
+            .args(["apply", "--check", patch])
+            .current_dir(&root)
+            // Outside of a repository, git takes paths relative to the current directory.
+            .env("GIT_CEILING_DIRECTORIES", parent)
+            .output()
+            .expect("git");
+        let problem = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{problem}");
+    }
+}
+
+#[test]
+fn the_tables_of_contributing_list_the_files() {
     for name in ["CONTRIBUTING.md", "CONTRIBUTING.zh-CN.md"] {
         let text = fs::read_to_string(project().join(name)).expect(name);
-        let mut sections = text.split("\n### ");
-        let section = sections.find(|it| it.contains(PATCH)).expect("a section");
-        let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
-        let files = rows.filter_map(|row| Some(row.split_once('`')?.0.to_owned()));
-        let files: BTreeSet<String> = files.collect();
-        assert_eq!(files, touched(), "{name}");
+        for patch in [CONSTRAINT, SECTION] {
+            let mut sections = text.split("\n### ");
+            let section = sections.find(|it| it.contains(patch)).expect("a section");
+            let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
+            let files = rows.filter_map(|row| Some(row.split_once('`')?.0.to_owned()));
+            let files: BTreeSet<String> = files.collect();
+            assert_eq!(files, touched(patch), "{name}");
+        }
     }
 }
