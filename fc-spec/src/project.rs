@@ -150,7 +150,7 @@ fn target(entry: Entry<'_>) -> TargetSettings {
 }
 
 /// Returns a list of languages as a set.
-fn languages<F>(key: Key<F>, node: Node<'_>) -> Option<Languages>
+pub(crate) fn languages<F>(key: Key<F>, node: Node<'_>) -> Option<Languages>
 where
     F: for<'a> crate::language::grammar::Form<Value<'a> = Vec<Lang>>,
 {

@@ -9,7 +9,7 @@ fn project() -> Project {
     project.write(
         "fc.yaml",
         "lint:
-  levels: { STANDARD: off, DOCS: off, SUNSET: off }
+  levels: { STANDARD: 'off', DOCS: 'off', SUNSET: 'off' }
   house:
     - id: no-commands
       zh: 不要指令
@@ -121,7 +121,7 @@ fn settings_that_cannot_be_used_are_shown_with_their_place() {
     level(&project, "eror");
     let run = project.fc(&["lint"]).expect(2);
     for part in [
-        "error[FC0893]: there is no level `eror`",
+        "error[FC0109]: `eror` is not allowed here",
         "--> fc.yaml:",
         "did you mean `error`?",
     ] {

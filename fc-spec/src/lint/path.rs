@@ -10,22 +10,11 @@ use std::collections::BTreeMap;
 /// The maximum number of references followed from one place. The schema has no chain of this length.
 const DEPTH: u8 = 16;
 
-/// Returns every kind of thing that a rule can name in `for`.
-pub(super) fn kinds() -> impl Iterator<Item = &'static str> {
-    let several = GROUPS.iter().flat_map(|(_, kinds)| kinds.iter().copied());
-    several.chain([
-        language::Group::TABLE.name,
-        language::Field::TABLE.name,
-        language::EnumValue::TABLE.name,
-        language::NamedVariant::TABLE.name,
-    ])
-}
-
 /// The schema of the output of `fcproto inspect` for one kind of thing.
 pub(super) struct Shape(Schema);
 
 impl Shape {
-    /// Returns the schema of one of [`kinds`].
+    /// Returns the schema of a kind of thing.
     pub fn of(kind: &str) -> Self {
         let [operations, types] = GROUPS.map(|(_, kinds)| kinds.contains(&kind));
         Self(match kind {

@@ -72,6 +72,12 @@ impl Level {
     /// All levels.
     pub const ALL: &'static [Self] = &[Self::Off, Self::Warning, Self::Error];
 
+    /// Returns the level with this name, if there is one.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        let mut levels = Self::ALL.iter();
+        levels.find(|level| level.name() == name).copied()
+    }
+
     /// Returns the name in `fc.yaml`.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -16,17 +16,17 @@
 use super::project_rules::{HouseRule, SETTINGS};
 use super::rule::{Category, Level, Rule};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
-use crate::model::Text;
+use crate::language::grammar::{
+    Form as _, HOUSE_RULE, HouseRule as RuleForm, LINT, Lint, List, PROJECT,
+};
+use crate::load::check_kind;
+use crate::model::{Languages, Text};
+use crate::project::languages;
 use crate::source::{Sources, Span};
 use crate::syntax::{Node, parse, read_files};
 use crate::text;
 use std::collections::HashMap;
 use std::path::Path;
-
-/// The key of `fc.yaml`.
-const LINT: &str = "lint";
-const LEVELS: &str = "levels";
-const HOUSE: &str = "house";
 
 /// The levels and the rules of the project.
 #[derive(Debug, Default)]
@@ -75,6 +75,8 @@ pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sour
     }
     let mut reader = Reader {
         settings: Settings::default(),
+        texts: Languages::All,
+        levels: Vec::new(),
         ids: HashMap::new(),
         faults,
     };
@@ -83,7 +85,7 @@ pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sour
     for file in named.drain(..) {
         read(root, &file, &mut sources, &mut reader, false);
     }
-    reader.check_levels(&sources);
+    reader.check_levels();
     let settings = reader.settings;
     (settings, sources)
 }
@@ -107,8 +109,8 @@ fn read(
     if !whole {
         let message = text!("无法读取 `{name}`", "`{name}` cannot be read");
         let advice = text!(
-            "改正 `{HOUSE}` 中的文件名",
-            "correct the file name under `{HOUSE}`"
+            "改正 `house` 中的文件名",
+            "correct the file name under `house`"
         );
         reader.fault(Span::point(id, 0), message, advice);
         return Vec::new();
@@ -116,17 +118,34 @@ fn read(
     let Some(tree) = parse(id, &source.text, reader.faults) else {
         return Vec::new();
     };
-    if is_first {
-        let lint = tree.root().get(LINT);
-        lint.map(|lint| reader.lint(lint)).unwrap_or_default()
-    } else {
-        reader.house(tree.root())
+    let root = tree.root();
+    if !is_first {
+        let kind = List::<RuleForm>::KIND;
+        check_kind(&kind, root, root.span(), reader.texts, reader.faults);
+        return reader.house(root);
     }
+    if let Some(texts) = languages(PROJECT.languages, root) {
+        reader.texts = texts;
+    }
+    let Some(lint) = PROJECT.lint.entry(root).filter(|it| !it.value.is_null()) else {
+        return Vec::new();
+    };
+    let at = lint.key.span();
+    check_kind(&Lint::KIND, lint.value, at, reader.texts, reader.faults);
+    reader.levels(lint.value);
+    LINT.house
+        .of(lint.value)
+        .map(|it| reader.house(it))
+        .unwrap_or_default()
 }
 
 pub(super) struct Reader<'f> {
     settings: Settings,
-    /// The place of each rule of the project, by its id, and of each key of `levels`, by `levels` and the name.
+    /// The languages that each text requires.
+    texts: Languages,
+    /// The keys of `levels` with their places.
+    levels: Vec<(String, Span)>,
+    /// The place of each rule of the project, by its id.
     ids: HashMap<String, Span>,
     pub(super) faults: &'f mut Faults,
 }
@@ -165,76 +184,29 @@ impl Reader<'_> {
             });
     }
 
-    /// Reads the value of `lint` and returns the files that it lists.
-    fn lint(&mut self, node: Node<'_>) -> Vec<String> {
-        let mut files = Vec::new();
-        for entry in node.entries() {
-            match entry.name() {
-                LEVELS => self.levels(entry.value),
-                HOUSE => files = self.house(entry.value),
-                _ => self.unknown(entry.key, &text!("键", "key"), [LEVELS, HOUSE].into_iter()),
-            }
-        }
-        if node.as_mapping().is_none() && !node.is_null() {
-            let advice = text!(
-                "在下面写 `{LEVELS}:` 或 `{HOUSE}:`",
-                "write `{LEVELS}:` or `{HOUSE}:` below"
-            );
-            self.fault(
-                node.span(),
-                text!("`lint` 应为映射", "`lint` must be a mapping"),
-                advice,
-            );
-        }
-        files
-    }
-
-    fn levels(&mut self, node: Node<'_>) {
-        for entry in node.entries() {
-            if let Some(level) = self.level(entry.value) {
+    fn levels(&mut self, lint: Node<'_>) {
+        for entry in LINT.levels.get(lint) {
+            if let Some(level) = entry.value.as_str().and_then(Level::named) {
                 let name = entry.name();
                 let rule = Rule::parse(name).map(|rule| rule.code.number);
-                self.ids
-                    .insert(format!("{LEVELS} {name}"), entry.key.span());
+                self.levels.push((name.to_owned(), entry.key.span()));
                 let key = rule.unwrap_or(name).to_owned();
                 self.settings.levels.insert(key, level);
             }
         }
     }
 
-    pub(super) fn level(&mut self, node: Node<'_>) -> Option<Level> {
-        let levels = Level::ALL.iter();
-        let found = levels
-            .clone()
-            .find(|level| node.as_str() == Some(level.name()));
-        if found.is_none() {
-            self.unknown(
-                node,
-                &text!("级别", "level"),
-                levels.map(|level| level.name()),
-            );
-        }
-        found.copied()
-    }
-
     /// Checks that every key of `levels` names a rule or a category. The caller has read all rules of the project before.
-    fn check_levels(&mut self, sources: &Sources) {
+    fn check_levels(&mut self) {
         let categories = Category::ALL.iter().map(|category| category.name());
         let house: Vec<String> = self.settings.house.iter().map(|it| it.id.clone()).collect();
-        let mut spans: Vec<Span> = self
-            .ids
-            .iter()
-            .filter_map(|(key, span)| {
-                let name = key.strip_prefix(LEVELS)?.trim_start();
-                let is_known = Rule::parse(name).is_some()
-                    || categories.clone().any(|it| it == name)
-                    || house.iter().any(|it| it == name);
-                (!is_known).then_some(*span)
-            })
-            .collect();
-        spans.sort();
-        for span in spans {
-            let name = sources.slice(span).trim_matches(['"', '\'']);
+        for (name, span) in &self.levels {
+            let is_known = Rule::parse(name).is_some()
+                || categories.clone().any(|it| it == name)
+                || house.iter().any(|it| it == name);
+            if is_known {
+                continue;
+            }
             let rules = Rule::all().flat_map(|rule| [rule.code.number, rule.name]);
             let known = categories.clone().chain(rules);
             let known = known.chain(house.iter().map(String::as_str));
@@ -242,9 +214,9 @@ impl Reader<'_> {
                 "没有规则或类别 `{name}`",
                 "there is no rule and no category `{name}`"
             );
-            let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), span, message);
+            let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), *span, message);
             self.faults.push(match nearest(name, known) {
-                Some(near) => fault.fix(span, near, meant(near)),
+                Some(near) => fault.fix(*span, near, meant(near)),
                 None => fault.note(text!(
                     "`fcproto explain` 列出全部规则",
                     "`fcproto explain` lists the rules"
@@ -256,22 +228,11 @@ impl Reader<'_> {
     /// Reads the list of rules and returns the files that it names.
     fn house(&mut self, node: Node<'_>) -> Vec<String> {
         let mut files = Vec::new();
-        if node.as_sequence().is_none() && !node.is_null() {
-            let advice = text!(
-                "在每条规则前写短横线：`- id: …`",
-                "write a dash before each rule: `- id: …`"
-            );
-            let message = text!(
-                "项目的规则应为列表",
-                "the rules of the project must be a list"
-            );
-            self.fault(node.span(), message, advice);
-        }
         for item in node.items() {
             if let Some(file) = item.as_str() {
                 files.push(file.to_owned());
             } else if let Some(rule) = self.rule(item) {
-                let span = item.get("id").map_or(item.span(), Node::span);
+                let span = HOUSE_RULE.id.of(item).map_or(item.span(), Node::span);
                 if let Some(first) = self.ids.insert(rule.id.clone(), span) {
                     let message = text!(
                         "两条规则的 `id` 都是 `{id}`",

@@ -281,11 +281,11 @@ fn levels_go_from_the_rule_to_what_contains_its_category() {
             "error",
         ),
         (
-            "lint: { levels: { STANDARD: off, similar-keys: error } }",
+            "lint: { levels: { STANDARD: \"off\", similar-keys: error } }",
             "FC0802",
             "error",
         ),
-        ("lint: { levels: { fc0802: off } }", "FC0802", "off"),
+        ("lint: { levels: { fc0802: 'off' } }", "FC0802", "off"),
         ("lint: { levels: { DOCS: error } }", "FC0802", "error"),
     ] {
         assert_eq!(level(yaml, name), expected, "{yaml}");

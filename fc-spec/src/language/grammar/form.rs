@@ -1,6 +1,7 @@
 //! The forms of a value: each is a type with the kind that the grammar requires and the Rust type that the reader returns.
 
 use super::kind::Kind;
+use super::{field, operation};
 use crate::language::scalar;
 use crate::model::{self, BodyState, Effect, EnumRepr, Fact, HeaderType, Lang, WireForm};
 use crate::syntax::{Entries as NodeEntries, Node};
@@ -73,6 +74,27 @@ forms! {
         "en" => Some(Lang::En),
         _ => None,
     };
+    /// The level of a lint rule.
+    LevelName: Kind::Word(&[
+        ("off", "The findings are not shown.", "不显示提示。"),
+        ("warning", "The findings are shown.", "显示提示。"),
+        ("error", "The findings are shown, and the lint fails.", "显示提示，检查失败。"),
+    ]) => String, scalar::text;
+    /// The kind of things that a rule of the project tests.
+    TestedKind: Kind::Word(&[
+        ("operation", "Commands, reports and streams.", "指令、上报和数据流。"),
+        ("type", "Structs, enums and choices.", "结构、枚举和多选一。"),
+        (operation::Command::NAME, "Commands.", "指令。"),
+        (operation::Report::NAME, "Reports.", "上报。"),
+        (operation::Stream::NAME, "Streams.", "数据流。"),
+        (field::Struct::NAME, "Structs.", "结构。"),
+        (field::Enum::NAME, "Enums.", "枚举。"),
+        (field::OneOf::NAME, "Choices.", "多选一。"),
+        (operation::Group::NAME, "Groups.", "分组。"),
+        (field::Field::NAME, "Fields.", "字段。"),
+        (field::EnumValue::NAME, "Values of enums.", "枚举的取值。"),
+        (field::NamedVariant::NAME, "Variants of choices.", "多选一的选项。"),
+    ]) => String, scalar::text;
     /// The word for a missing code.
     Unassigned: Kind::Word(&[(
         "unassigned",

@@ -95,6 +95,15 @@ impl Kind {
         }
     }
 
+    /// Returns the word of a closed set, if it is one.
+    pub fn word(&self, word: &str) -> Option<&'static str> {
+        let Self::Word(words) = self else {
+            return None;
+        };
+        let mut words = words.iter().map(|(word, ..)| *word);
+        words.find(|known| *known == word)
+    }
+
     /// Returns `true` if a type or the name of one may be here.
     pub fn is_type(&self) -> bool {
         match self {

@@ -102,7 +102,7 @@ pub(crate) use coordinates::*;
 pub(crate) use entity::*;
 pub(crate) use field::*;
 pub(crate) use file::*;
-pub(crate) use form::Form;
+pub(crate) use form::{Form, List, TestedKind};
 pub(crate) use glossary::*;
 pub(crate) use key::Key;
 pub(crate) use kind::{AnyKey, Doc, Kind, Table};

@@ -1,8 +1,10 @@
 //! `fc.yaml`: the settings of a project.
 
-use super::form::{Bool, Entries, Int, Json, LangName, List, Str};
+use super::common::TEXT;
+use super::form::{Bool, Entries, Form, Int, Json, LangName, LevelName, List, Str, TestedKind};
 use super::key::Key;
-use super::kind::{Doc, Said};
+use super::kind::{Doc, Kind, Said};
+use crate::syntax::Node;
 
 /// The name of the crate. `crate` is no identifier, so the table of targets cannot declare it.
 pub(crate) const CRATE: Key<Str> = Key::new(
@@ -31,7 +33,39 @@ grammar! {
         optional targets: Entries<Str, Target>;
         /// The levels and the rules of `fcproto lint`.
         /// `fcproto lint` 的级别和规则。
-        optional lint: Json, example "{ levels: { STANDARD: warning } }";
+        optional lint: Lint;
+    }
+
+    /// The settings of `fcproto lint`.
+    /// `fcproto lint` 的设置。
+    LINT: Lint = "lint settings" "检查设置" {
+        /// The levels of rules and categories, by their codes or names.
+        /// 规则和类别的级别，以编号或名称为键。
+        optional levels: Entries<Str, LevelName>;
+        /// The rules of the project, and files with such rules.
+        /// 项目自己的规则，以及存放规则的文件。
+        optional house: List<RuleOrFile>, example "[rules/naming.yaml]";
+    }
+
+    /// A rule of the project: a requirement for things of the spec. Paths and values are those of `fcproto inspect`.
+    /// 项目的一条规则：对规范内容的要求；路径和值与 `fcproto inspect` 的输出一致。
+    HOUSE_RULE: HouseRule = "rule" "规则" {
+        /// The name of the rule, also a key of `levels`.
+        /// 规则的名称，也是 `levels` 的键。
+        required id: Str, example "motion-needs-precondition";
+        use TEXT.zh, TEXT.en;
+        /// The level, unless `levels` sets another.
+        /// 级别；`levels` 的设置优先。
+        optional level: LevelName, default "warning";
+        /// The kind of things that the rule tests.
+        /// 规则适用的对象。
+        required r#for: TestedKind;
+        /// The rule applies only to things that pass this test.
+        /// 只有符合此判断的对象才适用。
+        optional r#where: Json, example "{ effect: motion }";
+        /// The test that each thing must pass.
+        /// 对象应当符合的判断。
+        required require: Json, example "{ accepted: present }";
     }
 
     /// A target: a product of the generator, or the output of a plugin.
@@ -65,5 +99,18 @@ grammar! {
         /// The options that are passed to the plugin.
         /// 传给插件的选项。
         optional options: Json, example "{ title: Robots }";
+    }
+}
+
+/// A rule of the project, or the name of a file with rules.
+#[derive(Debug)]
+pub(crate) enum RuleOrFile {}
+
+impl Form for RuleOrFile {
+    const KIND: Kind = Kind::Either(&[Kind::Text, HouseRule::KIND]);
+    type Value<'a> = Node<'a>;
+
+    fn read(node: Node<'_>) -> Option<Self::Value<'_>> {
+        Some(node)
     }
 }

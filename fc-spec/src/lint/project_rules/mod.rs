@@ -71,9 +71,9 @@ pub(super) const SETTINGS: &Rule = &Rule {
         number: "FC0893",
         title: ["invalid setting of the lint", "无效的检查设置"],
         text: [
-            "`lint` in `fc.yaml` has an unknown key, level, path or test. Paths are those of `fcproto inspect`. The lint does not run until you \
-         correct it, because a rule with a typo would silently find nothing.",
-            "`fc.yaml` 的 `lint` 中有未知的键、级别、路径或判断方式。路径与 `fcproto inspect` 的输出一致。改正之前不作检查：写错的规则永远不会有提示。",
+            "`lint` in `fc.yaml` has an unknown rule, category, path or test. Paths are those of `fcproto inspect`. The lint does not run until \
+         you correct it, because a rule with a typo would silently find nothing.",
+            "`fc.yaml` 的 `lint` 中有未知的规则、类别、路径或判断方式。路径与 `fcproto inspect` 的输出一致。改正之前不作检查：写错的规则永远不会有提示。",
         ],
     },
     category: Category::House,

@@ -1,13 +1,13 @@
 //! Reads a rule of the project: its subject and its tests.
 
-use super::{GROUPS, HOUSE_RULE, HouseRule, SETTINGS};
+use super::{GROUPS, HOUSE_RULE as RULE, HouseRule, SETTINGS};
 use crate::diagnostic::{Diagnostic, FaultCode, nearest};
-use crate::language::grammar::TEXT;
+use crate::language::grammar::{Form as _, HOUSE_RULE, TestedKind, both_languages};
 use crate::language::scalar;
-use crate::lint::path::{At, Shape, kinds};
+use crate::lint::path::{At, Shape};
 use crate::lint::predicate::{Check, Test};
+use crate::lint::rule::Level;
 use crate::lint::settings::{Reader, meant};
-use crate::model::Text;
 use crate::syntax::{Node, NodeKind, Style};
 use crate::text;
 use regex_lite::Regex;
@@ -17,91 +17,30 @@ use serde_json::Value;
 const DEPTH: u8 = 16;
 
 impl Reader<'_> {
+    /// Reads a rule. `None` if it is malformed.
     pub(in crate::lint) fn rule(&mut self, node: Node<'_>) -> Option<HouseRule> {
-        const KEYS: [&str; 7] = ["id", "zh", "en", "level", "for", "where", "require"];
-        for entry in node.entries() {
-            if !KEYS.contains(&entry.name()) {
-                self.unknown(
-                    entry.key,
-                    &text!("规则的键", "key of a rule"),
-                    KEYS.into_iter(),
-                );
-            }
-        }
-        let mut text = |key: &str| {
-            let found = node.get(key).and_then(Node::as_str).map(str::to_owned);
-            if found.is_none() {
-                let message = missing(key);
-                let advice = text!(
-                    "规则应为有 `id`、`zh`、`en`、`for` 和 `require` 的映射",
-                    "a rule must be a mapping with `id`, `zh`, `en`, `for` and `require`"
-                );
-                self.fault(
-                    node.entries()
-                        .next()
-                        .map_or(node.span(), |it| it.key.span()),
-                    message,
-                    advice,
-                );
-            }
-            found
+        let kind = HOUSE_RULE.r#for.of(node)?.as_str()?;
+        let on = match GROUPS.iter().find(|(name, _)| *name == kind) {
+            Some((_, kinds)) => kinds.to_vec(),
+            None => vec![TestedKind::KIND.word(kind)?],
         };
-        let (id, zh, en) = (text("id"), text(TEXT.zh.name), text(TEXT.en.name));
-        let on = self.kinds(node)?;
-        let level = match node.get("level") {
-            Some(level) => self.level(level)?,
-            None => HOUSE_RULE.level,
-        };
+        let level = HOUSE_RULE.level.read(node);
         let shapes: Vec<Shape> = on.iter().map(|kind| Shape::of(kind)).collect();
         // Things of kinds that share a dump have the same paths.
         let shape = shapes.first()?;
-        let (only, require) = (node.get("where"), node.get("require"));
+        let only = HOUSE_RULE.r#where.of(node);
         let only = only.map_or(Some(Test::All(Vec::new())), |it| {
             self.test(it, shape, DEPTH)
         });
-        let Some(require) = require else {
-            let advice = text!(
-                "写上要求，例如 `require: {{ since: present }}`",
-                "write the requirement, such as `require: {{ since: present }}`"
-            );
-            self.fault(
-                node.span(),
-                text!("规则没有 `require`", "the rule has no `require`"),
-                advice,
-            );
-            return None;
-        };
-        let require = self.test(require, shape, DEPTH);
+        let require = self.test(HOUSE_RULE.require.of(node)?, shape, DEPTH);
         Some(HouseRule {
-            id: id?,
-            text: Text { zh: zh?, en: en? },
-            level,
+            id: HOUSE_RULE.id.read(node)?,
+            text: both_languages(node),
+            level: level.map_or(Some(RULE.level), |it| Level::named(&it))?,
             on,
             only: only?,
             require: require?,
         })
-    }
-
-    /// Reads the kinds of things in `for`.
-    fn kinds(&mut self, node: Node<'_>) -> Option<Vec<&'static str>> {
-        let Some(on) = node.get("for") else {
-            let advice = text!(
-                "写上适用的对象，例如 `for: command`",
-                "name the kind of thing, such as `for: command`"
-            );
-            self.fault(node.span(), missing("for"), advice);
-            return None;
-        };
-        let word = on.as_str().unwrap_or_default();
-        if let Some((_, kinds)) = GROUPS.iter().find(|(name, _)| *name == word) {
-            return Some(kinds.to_vec());
-        }
-        let found = kinds().find(|kind| *kind == word);
-        if found.is_none() {
-            let words: Vec<_> = kinds().chain(GROUPS.map(|(name, _)| name)).collect();
-            self.unknown(on, &text!("对象种类", "kind of thing"), words.into_iter());
-        }
-        Some(vec![found?])
     }
 
     /// Reads a mapping of tests by path, or by `all`, `any` and `not`. All of its entries must pass.
@@ -331,8 +270,4 @@ impl Reader<'_> {
         }
         length
     }
-}
-
-fn missing(key: &str) -> Text {
-    text!("规则缺少 `{key}`", "`{key}` is missing from this rule")
 }
