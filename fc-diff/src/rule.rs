@@ -115,6 +115,22 @@ impl Language {
     }
 }
 
+/// Returns the number of a code: 25 for `FC0725`.
+#[allow(clippy::panic, reason = "it is only used for constants, so the compiler reports it")]
+pub(crate) const fn number(code: &str) -> u8 {
+    match code.as_bytes() {
+        [
+            b'F',
+            b'C',
+            b'0',
+            b'7',
+            tens @ b'0'..=b'9',
+            ones @ b'0'..=b'9',
+        ] => (*tens - b'0') * 10 + (*ones - b'0'),
+        _ => panic!("a code is FC07 and two digits"),
+    }
+}
+
 /// Returns the English or the Chinese string.
 pub(crate) fn pick(lang: Lang, [en, zh]: [&str; 2]) -> &str {
     lang.pick(zh, en)

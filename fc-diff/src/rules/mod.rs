@@ -67,17 +67,37 @@ const BASE: Rule = Rule {
     text: ["", ""],
 };
 
-/// Declares the rules of a section by their differences from [`BASE`], and the list of them.
+/// Returns the texts of a code in `explain`, in English and in Chinese.
+macro_rules! explained {
+    ($code:expr) => {
+        [
+            include_str!(concat!("explain/", $code, ".md")).trim_ascii_end(),
+            include_str!(concat!("explain/", $code, ".zh.md")).trim_ascii_end(),
+        ]
+    };
+}
+
+/// Declares the rules of a section by their differences from [`BASE`], and the list of them. The explanation of a rule is
+/// in `explain`.
 macro_rules! rules {
-    ($($NAME:ident { $($field:ident: $value:expr,)+ })+) => {
-        $(pub(crate) static $NAME: Rule = Rule { $($field: $value,)+ ..BASE };)+
+    ($($Code:ident $NAME:ident $name:literal $zh:literal $en:literal {
+        $($field:ident: $value:expr,)*
+    })+) => {
+        $(pub(crate) static $NAME: Rule = Rule {
+            number: $crate::rule::number(stringify!($Code)),
+            name: $name,
+            title: [$en, $zh],
+            text: $crate::rules::explained!(stringify!($Code)),
+            $($field: $value,)*
+            ..BASE
+        };)+
 
         /// All of the section.
         pub(crate) const RULES: &[&Rule] = &[$(&$NAME),+];
     };
 }
 
-use rules;
+use {explained, rules};
 
 /// A difference that no rule judges.
 pub(crate) static UNJUDGED: Rule = Rule {
@@ -88,10 +108,6 @@ pub(crate) static UNJUDGED: Rule = Rule {
         "有的规则只评估一个方向，反方向的变更归在这里",
     ],
     title: ["a change that no rule judges", "没有规则评估的变更"],
-    text: [
-        "The two versions differ here, and no rule judges the effect. Most such changes are texts, conditions, \
-         examples and notes. Read them.",
-        "两个版本在这里不同，但没有规则评估其影响。多数是文字、条件、示例和备注，请人工查看。",
-    ],
+    text: explained!("FC0700"),
     ..BASE
 };

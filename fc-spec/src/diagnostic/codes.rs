@@ -7,7 +7,7 @@
 //! Ranges: `FC00xx` YAML itself, `FC01xx` shape (unknown key, missing key, wrong kind, bad scalar), `FC02xx`
 //! names and references, `FC03xx` codes, `FC04xx` fields, constraints and examples, `FC05xx` frame,
 //! transport, envelope and results, `FC06xx` texts, history and answers. `FC07xx` are the rules of `fcproto diff`, `FC08xx` those of
-//! the lint. Each lint rule declares its code next to its search ([`LintCode`]).
+//! the lint. Each lint rule declares its code next to its search ([`LintCode`]), and has the same two files.
 
 use crate::model::Lang;
 
@@ -34,9 +34,29 @@ impl LintCode {
     #[must_use]
     pub fn text_in(&self, lang: Lang) -> &'static str {
         let [en, zh] = self.text;
-        lang.pick(zh, en)
+        lang.pick(zh, en).trim_end()
     }
 }
+
+/// Returns the explanations of a code in `explain`, in English and in Chinese.
+macro_rules! explained {
+    (@in $language:literal $code:ident) => {
+        include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/src/diagnostic/explain/",
+            stringify!($code),
+            $language
+        ))
+    };
+    ($code:ident) => {
+        [
+            $crate::diagnostic::explained!(@in ".md" $code),
+            $crate::diagnostic::explained!(@in ".zh.md" $code),
+        ]
+    };
+}
+
+pub(crate) use explained;
 
 macro_rules! fault_codes {
     ($($code:ident $variant:ident $zh:literal $en:literal;)+) => {
@@ -75,10 +95,10 @@ macro_rules! fault_codes {
             #[must_use]
             pub fn explain(self, lang: Lang) -> &'static str {
                 match self {
-                    $(Self::$variant => lang.pick(
-                        include_str!(concat!("explain/", stringify!($code), ".zh.md")),
-                        include_str!(concat!("explain/", stringify!($code), ".md")),
-                    ),)+
+                    $(Self::$variant => {
+                        let [en, zh] = explained!($code);
+                        lang.pick(zh, en)
+                    })+
                     Self::Lint(code) => code.text_in(lang),
                 }
             }

@@ -8,6 +8,7 @@ mod codes;
 mod render;
 mod suggest;
 
+pub(crate) use codes::explained;
 pub use codes::{FaultCode, LintCode};
 pub use render::{Format, render, summary};
 pub use suggest::nearest;

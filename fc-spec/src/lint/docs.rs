@@ -1,119 +1,22 @@
 //! DOCS: rules about texts.
 
 use super::finding::Finding;
-use super::rule::{Category, Level, Rule};
+use super::rule::rules;
 use super::search::{Search, of_field, of_operation};
-use crate::diagnostic::LintCode;
 use crate::load::texts::has_chinese;
 use crate::model::Operation;
 use crate::text;
 use std::collections::BTreeSet;
 
-pub(super) const RULES: &[Rule] = &[
-    Rule {
-        code: LintCode {
-            number: "FC0831",
-            title: ["text that repeats the name", "只重复名称的说明"],
-            text: [
-                "The English text only repeats the key: `Lamp name` for `lampName`. Describe its purpose, its origin or its special values. Off by \
-             default: some keys need no more words.",
-                "英文说明只重复了键名：`lampName` 写成 `Lamp name`。写明用途、来源或特殊取值的含义。默认关闭：有的键确实没有更多可写。",
-            ],
-        },
-        category: Category::Docs,
-        name: "text-repeats-name",
-        level: Level::Off,
-        find: Some(text_repeats_name),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0832",
-            title: ["title with a full stop", "标题末尾有句号"],
-            text: [
-                "Titles and descriptions appear in tables and lists, without a full stop. Only a text of several sentences ends with one.",
-                "标题和说明显示在表格和列表中，末尾不加句号。只有由多句组成的文本才以句号结尾。",
-            ],
-        },
-        category: Category::Docs,
-        name: "full-stop",
-        level: Level::Warning,
-        find: Some(full_stop),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0833",
-            title: ["punctuation of the other language", "用了另一种语言的标点"],
-            text: [
-                "A Chinese text has an ASCII comma, semicolon or colon after a Chinese character, or an English text has full-width punctuation. \
-             Usually it was copied from the other text. Use the punctuation of the language.",
-                "中文里汉字后面用了半角的逗号、分号或冒号，或者英文里用了全角标点，多半是从另一种语言复制过来的。改用本语言的标点。",
-            ],
-        },
-        category: Category::Docs,
-        name: "foreign-punctuation",
-        level: Level::Warning,
-        find: Some(foreign_punctuation),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0834",
-            title: ["name in one language only", "只有一种语言提到的名称"],
-            text: [
-                "One of the two texts has a name in back quotes that the other lacks. Usually only one of them was changed later. Add the name to the \
-             other text.",
-                "中英文两份文本中，只有一份提到了反引号里的某个名称，多半是后来只改了其中一份。把名称补到另一份中。",
-            ],
-        },
-        category: Category::Docs,
-        name: "code-in-one-language",
-        level: Level::Warning,
-        find: Some(code_in_one_language),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0835",
-            title: ["deprecated without a replacement", "弃用时没有写明改用什么"],
-            text: [
-                "An operation is `deprecated` without `replaced_by`. Generated packages warn its users, who need to know what to use instead. Write \
-             `replaced_by`, or waive this if there is no replacement.",
-                "接口标记为 `deprecated`，但没有 `replaced_by`。生成的代码会提醒使用者，使用者需要知道改用什么。写上 `replaced_by`；确实没有替代的，可加豁免。",
-            ],
-        },
-        category: Category::Docs,
-        name: "no-replacement",
-        level: Level::Warning,
-        find: Some(no_replacement),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0836",
-            title: ["new operation without a date", "没有写明日期的新接口"],
-            text: [
-                "An operation that is not in the source document has no `since`. Robots in the field are older than the spec, and a caller needs to \
-             know which of them have the operation. Write `since`.",
-                "接口不在源文档中，也没有写 `since`。现场的机器人比规范旧，调用方需要知道哪些机器人支持。写上 `since`。",
-            ],
-        },
-        category: Category::Docs,
-        name: "new-without-since",
-        level: Level::Warning,
-        find: Some(new_without_since),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0837",
-            title: ["translation with fewer paragraphs", "两种语言段落数不同"],
-            text: [
-                "The two texts have different numbers of paragraphs, so one of them probably lacks something. Compare them.",
-                "中英文的段落数不同，很可能有一份缺了内容。对照两份文本。",
-            ],
-        },
-        category: Category::Docs,
-        name: "paragraphs-differ",
-        level: Level::Warning,
-        find: Some(paragraphs_differ),
-    },
-];
+rules! { Docs
+    FC0831 "text-repeats-name" Off text_repeats_name "只重复名称的说明" "text that repeats the name";
+    FC0832 "full-stop" Warning full_stop "标题末尾有句号" "title with a full stop";
+    FC0833 "foreign-punctuation" Warning foreign_punctuation "用了另一种语言的标点" "punctuation of the other language";
+    FC0834 "code-in-one-language" Warning code_in_one_language "只有一种语言提到的名称" "name in one language only";
+    FC0835 "no-replacement" Warning no_replacement "弃用时没有写明改用什么" "deprecated without a replacement";
+    FC0836 "new-without-since" Warning new_without_since "没有写明日期的新接口" "new operation without a date";
+    FC0837 "paragraphs-differ" Warning paragraphs_differ "两种语言段落数不同" "translation with fewer paragraphs";
+}
 
 fn words(text: &str) -> Vec<String> {
     let words = text.split(|c: char| !c.is_ascii_alphanumeric());

@@ -89,6 +89,34 @@ impl Level {
     }
 }
 
+/// Declares a rule by its code, name, category, level, search and titles. Its explanation is in `diagnostic/explain`.
+macro_rules! rule {
+    ($code:ident $name:literal $Category:ident $Level:ident $find:expr, $zh:literal $en:literal) => {
+        $crate::lint::Rule {
+            code: $crate::diagnostic::LintCode {
+                number: stringify!($code),
+                title: [$en, $zh],
+                text: $crate::diagnostic::explained!($code),
+            },
+            category: $crate::lint::Category::$Category,
+            name: $name,
+            level: $crate::lint::Level::$Level,
+            find: $find,
+        }
+    };
+}
+
+/// Declares the rules of a category: code, name, level, search and titles.
+macro_rules! rules {
+    ($Category:ident $($code:ident $name:literal $Level:ident $find:ident $zh:literal $en:literal;)+) => {
+        pub(super) const RULES: &[$crate::lint::Rule] = &[
+            $($crate::lint::rule::rule!($code $name $Category $Level Some($find), $zh $en)),+
+        ];
+    };
+}
+
+pub(super) use {rule, rules};
+
 /// A rule of the lint.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {

@@ -1,59 +1,16 @@
 //! SUNSET: rules about removal dates of deprecated things.
 
 use super::finding::Finding;
-use super::rule::{Category, Level, Rule};
+use super::rule::rules;
 use super::search::{Search, Subject};
-use crate::diagnostic::LintCode;
 use crate::model::{Deprecation, TypeShape, is_past};
 use crate::text;
 
-pub(super) const RULES: &[Rule] = &[
-    Rule {
-        code: LintCode {
-            number: "FC0871",
-            title: ["removal date is near", "移除日期临近"],
-            text: [
-                "A deprecated thing will be removed this month or in one of the next three. Programs that use it must change now. The owner prepares \
-             the removal (`fcproto retire`) or agrees on a later date.",
-                "弃用的内容将在本月或之后三个月内移除。还在使用的程序现在就要改；负责人准备移除（`fcproto retire`），或商定更晚的日期。",
-            ],
-        },
-        category: Category::Sunset,
-        name: "sunset-near",
-        level: Level::Warning,
-        find: Some(sunset_near),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0872",
-            title: ["removal date has passed", "移除日期已过"],
-            text: [
-                "The date in `sunset` has passed, and the deprecated thing is still there. Remove it with `fcproto retire`, or agree on another date. If \
-             dates are not kept, users stop believing them.",
-                "`sunset` 的日期已过，弃用的内容还在。用 `fcproto retire` 移除，或商定新的日期。日期不算数，使用者就不再相信。",
-            ],
-        },
-        category: Category::Sunset,
-        name: "sunset-passed",
-        level: Level::Error,
-        find: Some(sunset_passed),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0873",
-            title: ["deprecated without a removal date", "弃用却没有移除日期"],
-            text: [
-                "A deprecated thing has no `sunset`, so its users do not know how long it works. Off by default: an old protocol may keep deprecated \
-             things for ever.",
-                "弃用的内容没有 `sunset`，使用者不知道还能用多久。默认关闭：旧协议可能永远保留弃用的内容。",
-            ],
-        },
-        category: Category::Sunset,
-        name: "no-sunset",
-        level: Level::Off,
-        find: Some(no_sunset),
-    },
-];
+rules! { Sunset
+    FC0871 "sunset-near" Warning sunset_near "移除日期临近" "removal date is near";
+    FC0872 "sunset-passed" Error sunset_passed "移除日期已过" "removal date has passed";
+    FC0873 "no-sunset" Off no_sunset "弃用却没有移除日期" "deprecated without a removal date";
+}
 
 /// A removal date is near if it is at most this number of months ahead.
 const NEAR: i32 = 3;

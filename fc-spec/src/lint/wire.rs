@@ -1,111 +1,19 @@
 //! WIRE: rules about values that some languages cannot hold, and about values without limits.
 
 use super::finding::Finding;
-use super::rule::{Category, Level, Rule};
+use super::rule::rules;
 use super::search::{Search, of_field};
-use crate::diagnostic::LintCode;
 use crate::model::{Direction, Exchange, IntKind, Type, TypeShape, WireForm};
 use crate::text;
 
-pub(super) const RULES: &[Rule] = &[
-    Rule {
-        code: LintCode {
-            number: "FC0851",
-            title: [
-                "integer that JavaScript cannot hold",
-                "JavaScript 存不下的整数",
-            ],
-            text: [
-                "A 64-bit integer is sent as a JSON number, and its `max` is not limited to 2^53 − 1. Readers that store numbers as doubles, such as \
-             browsers, change larger values silently. Limit it with `max`, or send it as a string (`wire: string`).",
-                "64 位整数以 JSON 数字发送，而 `max` 没有限制在 2^53 − 1 以内。用双精度浮点数保存数字的一方（例如浏览器）会悄悄改掉更大的值。用 `max` 加上限，或以字符串发送（`wire: string`）。",
-            ],
-        },
-        category: Category::Wire,
-        name: "integer-beyond-double",
-        level: Level::Off,
-        find: Some(integer_beyond_double),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0852",
-            title: ["fraction without a range", "没有范围的小数"],
-            text: [
-                "A fraction has neither `min` nor `max`, so a speed of 1e300 is accepted. Write the range of the robot.",
-                "小数没有 `min` 也没有 `max`，速度写成 1e300 也会接受。写上机器人能接受的范围。",
-            ],
-        },
-        category: Category::Wire,
-        name: "number-without-range",
-        level: Level::Off,
-        find: Some(number_without_range),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0853",
-            title: ["text or list of any length", "长度不限的文本或列表"],
-            text: [
-                "A text, a list or bytes without a `length` can be as large as a frame. Every program that stores it then chooses a different limit. \
-             Write `length`.",
-                "文本、列表或字节没有 `length`，最大可以和一帧一样长。保存它的程序各自定上限，互不相同。写上 `length`。",
-            ],
-        },
-        category: Category::Wire,
-        name: "unbounded-length",
-        level: Level::Off,
-        find: Some(unbounded_length),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0854",
-            title: [
-                "report with a required closed enum",
-                "必填字段为封闭枚举的上报",
-            ],
-            text: [
-                "A required field of a report has a `closed` enum. If the robot gets a new value, present apps refuse the whole report. Open the enum, \
-             or make the field optional.",
-                "上报中的必填字段使用了封闭（`closed`）的枚举。机器人一旦有新的取值，现在的 app 就会拒绝整条上报。改为开放的枚举，或把字段改为可选。",
-            ],
-        },
-        category: Category::Wire,
-        name: "closed-enum-in-report",
-        level: Level::Off,
-        find: Some(closed_enum_in_report),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0855",
-            title: [
-                "times in seconds and in milliseconds",
-                "同时有秒和毫秒的时间",
-            ],
-            text: [
-                "One object has a time in seconds and a time in milliseconds. A program that compares them is wrong, without an error. Use one of the \
-             two.",
-                "同一个对象里，有的时间以秒计，有的以毫秒计。程序直接比较两者会出错，而且不会报错。统一单位。",
-            ],
-        },
-        category: Category::Wire,
-        name: "seconds-beside-milliseconds",
-        level: Level::Off,
-        find: Some(seconds_beside_milliseconds),
-    },
-    Rule {
-        code: LintCode {
-            number: "FC0856",
-            title: ["value of any type", "没有类型的值"],
-            text: [
-                "The type is `json`: its content is not checked, and every program parses it by hand. Give it a type once the content is known.",
-                "类型是 `json`：内容不作检查，每个程序都要手工解析。知道内容后，写出类型。",
-            ],
-        },
-        category: Category::Wire,
-        name: "untyped-value",
-        level: Level::Off,
-        find: Some(untyped_value),
-    },
-];
+rules! { Wire
+    FC0851 "integer-beyond-double" Off integer_beyond_double "JavaScript 存不下的整数" "integer that JavaScript cannot hold";
+    FC0852 "number-without-range" Off number_without_range "没有范围的小数" "fraction without a range";
+    FC0853 "unbounded-length" Off unbounded_length "长度不限的文本或列表" "text or list of any length";
+    FC0854 "closed-enum-in-report" Off closed_enum_in_report "必填字段为封闭枚举的上报" "report with a required closed enum";
+    FC0855 "seconds-beside-milliseconds" Off seconds_beside_milliseconds "同时有秒和毫秒的时间" "times in seconds and in milliseconds";
+    FC0856 "untyped-value" Off untyped_value "没有类型的值" "value of any type";
+}
 
 /// The largest safe integer, 2^53 − 1. Larger integers can share a double.
 const SAFE: f64 = 9_007_199_254_740_991.0;

@@ -16,13 +16,12 @@ pub(in crate::emit::markdown) fn errors(desk: Desk<'_, '_>) -> Value {
         }
     };
     let rule = |rule: &lint::Rule| {
-        let pick = |[en, zh]: [&'static str; 2]| desk.lang.pick(zh, en);
         let [en, zh] = rule.setting();
         context! {
             code => rule.code.number,
-            title => pick(rule.code.title),
+            title => rule.code.title_in(desk.lang),
             setting => desk.lang.pick(zh, en),
-            text => pick(rule.code.text),
+            text => rule.code.text_in(desk.lang),
         }
     };
     context! {
