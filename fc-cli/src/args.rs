@@ -3,7 +3,7 @@
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::help::{Help, PageOptions, Part, global};
+use crate::help::{PageOptions, global};
 use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
@@ -94,74 +94,6 @@ pub enum Command {
     Man(shell::Man),
     #[command(hide = true)]
     HelpPage(PageOptions),
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "检查机器人协议规范，并由它生成代码和文档",
-            "Check a robot protocol spec and generate code from it",
-        ),
-        details: vec![
-            Part::Text(both(
-                "规范是 `spec/protocol.yaml` 和它旁边的文件。`fcproto generate` 由它生成 Rust、TypeScript、Python、Kotlin/Java 和 C++ 的包，\
-                 中英文文档，标准帧，以及供编辑器使用的 JSON Schema。`fc.yaml` 列出生成的目标和目录。",
-                "The spec is `spec/protocol.yaml` and the files next to it. `fcproto generate` makes packages for Rust, \
-                 TypeScript, Python, Kotlin/Java and C++ from it, documentation in Chinese and English, golden frames, and a \
-                 JSON Schema for editors. `fc.yaml` lists the targets and their directories.",
-            )),
-            Part::Text(both(
-                "`fcproto` 从当前目录向上查找项目：最近的含有 `fc.yaml` 或 `spec/protocol.yaml` 的目录。`--root` 直接指定项目。",
-                "`fcproto` looks for the project from the current directory upwards: the nearest directory with `fc.yaml` or \
-                 `spec/protocol.yaml`. `--root` names it directly.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto init lamp",
-                    both("创建一个项目", "Create a project"),
-                ),
-                ("fcproto check", both("检查规范", "Check the spec")),
-                (
-                    "fcproto explain FC0012",
-                    both("解释一个错误", "Explain an error"),
-                ),
-                (
-                    "fcproto fmt",
-                    both("排版规范文件", "Format the files of the spec"),
-                ),
-                (
-                    "fcproto new get_battery --group status",
-                    both(
-                        "新增一条指令，取下一个空闲的功能码",
-                        "Add a command with the next free code",
-                    ),
-                ),
-                (
-                    "fcproto diff git:main",
-                    both(
-                        "显示与 main 分支的差异",
-                        "Compare the working tree with a branch",
-                    ),
-                ),
-                (
-                    "fcproto generate",
-                    both("重新生成全部文件", "Generate all files"),
-                ),
-                (
-                    "fcproto generate --check",
-                    both(
-                        "有文件过期就报错，什么也不写",
-                        "Fail if a file is stale, and write nothing",
-                    ),
-                ),
-            ]),
-        ],
-        fails: both(
-            "规范有错误、文件过期或未排版，或变更不被接受",
-            "Errors in the spec, stale or unformatted files, or changes that are not accepted",
-        ),
-        speaks: "",
-    }
 }
 
 /// When colors are used.

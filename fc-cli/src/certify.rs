@@ -13,7 +13,6 @@ use fc_workshop::run::{Interrupt, block_on};
 
 use crate::allow::Allowed;
 use crate::endpoint::{self, Ports, with_port};
-use crate::help::{Help, Part};
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -75,45 +74,6 @@ pub struct Options {
         help = both("输出格式", "Output format")
     )]
     format: Shown,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "检验机器人或 app 是否符合规范，并出具证书",
-            "Certify a robot or an app by the spec",
-        ),
-        details: vec![
-            Part::Text(both(
-                "对机器人做一系列试验：每条指令的示例请求，消息号、分段、并发、压缩，缺少和错误的键，损坏的帧，上报的重发和应答。每项试验一行结果。\
-                 证书是一个网页和一个 JSON 文件，中英双语，失败的试验附收发的字节，并写明规范的指纹。",
-                "Runs trials against a robot: the example of each command; ids, split, pipelined and compressed requests; missing and wrong \
-                 keys; damaged frames; repetition and acknowledgement of reports. Each trial is a line. The certificate is a page and a JSON \
-                 file in both languages, with the bytes of failed trials and the fingerprint of the spec.",
-            )),
-            Part::Text(both(
-                "`--app` 扮演机器人，检验连接的 app：它的请求，每种上报的应答，重发、分段、压缩和损坏的上报，以及断线后的重新连接。",
-                "`--app` plays the robot and tests the app that connects: its requests, the acknowledgement of each report, repeated, split, \
-                 compressed and damaged reports, and its new connection after a loss.",
-            )),
-            Part::Text(both(
-                "只发送影响为 `read` 的指令；`--allow` 允许更多。",
-                "Only commands with the effect `read` are sent. `--allow` allows more.",
-            )),
-            Part::Examples(vec![
-                ("fcproto certify --robot 192.0.2.3 --out certificate", ""),
-                (
-                    "fcproto certify --robot 127.0.0.1:5000 --only frame",
-                    both("只检验损坏的帧", "Damaged frames only"),
-                ),
-            ]),
-        ],
-        fails: both(
-            "规范有错误，或有试验失败",
-            "Errors in the spec, or a trial that failed",
-        ),
-        speaks: both("`text` 格式", "`text`"),
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

@@ -3,7 +3,6 @@
 use fc_diff::{Version, section};
 use fc_spec::model::Model;
 
-use crate::help::{Help, Part};
 use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -29,37 +28,6 @@ pub struct Options {
         help = both("只含规范中这个受众的内容", "Include only the part of this audience of the spec")
     )]
     audience: Option<String>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "输出两个版本之间的变更记录",
-            "Print the changelog between two versions",
-        ),
-        details: vec![
-            Part::Text(both(
-                "供编写 app 和机器人程序的人阅读。输出一节 Markdown：不兼容的变更、新增内容和程序能察觉的其他变更。文字和示例的变更只计数。",
-                "The changelog is for people who write apps and robots. It is a section of Markdown with changes that break \
-                 something, additions, and other changes that programs notice. Changes of texts and examples are only counted.",
-            )),
-            Part::Text(both(
-                "版本的写法与 `fcproto diff` 相同。`--for` 把两个版本都限于这个受众，受众写在规范的 `availability` 中。",
-                "Versions are named as for `fcproto diff`. `--for` limits both versions to an audience that the spec names under \
-                 `availability`.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto changelog",
-                    both("下一次发布的变更", "Changes of the next release"),
-                ),
-                ("fcproto changelog 1.0 2.0 --lang zh", ""),
-                ("fcproto changelog --for product_app", ""),
-            ]),
-        ],
-        fails: both("某个版本的规范有错误", "Errors in the spec of a version"),
-        speaks: both("全部", "All of it"),
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

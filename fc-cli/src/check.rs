@@ -8,7 +8,6 @@ use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::fix::{Done, fix_all};
 use fc_spec::source::Sources;
 
-use crate::help::{Help, Part};
 use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -43,98 +42,6 @@ pub struct Options {
         help = both("以 diff 显示 `--fix` 的修改，什么也不写", "Show the changes of `--fix` as a diff and write nothing")
     )]
     dry_run: bool,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("检查规范中的错误", "Check the spec for errors"),
-        details: vec![
-            Part::Text(both(
-                "一次报告所有文件中的所有错误。`text` 格式写到标准错误，其他格式写到标准输出。",
-                "One run reports all errors in all files. The format `text` goes to standard error, the others go to standard \
-                 output.",
-            )),
-            Part::Text(both(
-                "警告不改变退出码，除非有 `--deny warnings`。例如 `fcproto new` 留下的待写文字是警告。",
-                "Warnings do not change the exit status without `--deny warnings`. An example is a text that `fcproto new` has \
-                 left to be written.",
-            )),
-            Part::Text(both(
-                "`--fix` 替换中文标点、制表符、写成 `yes` 的 `true` 和分隔符不对的日期，补上冒号后的空格和文字的引号，改正键或词中错了的一个字母。\
-                 只有修改后错误减少才写文件。",
-                "`--fix` replaces punctuation of a Chinese keyboard, tabs, `yes` for `true`, and dates with other separators. It adds \
-                 missing spaces after colons and missing quotes around texts. It corrects one wrong letter in a key or word. It writes \
-                 files only if fewer errors are left.",
-            )),
-            Part::Text(both(
-                "`text` 和 `json` 中的路径从项目目录算起。`sarif` 和 `github` 中的路径从仓库算起：`$GITHUB_WORKSPACE`，\
-                 或向上最近的含有 `.git` 的目录；两者都没有时从当前目录算起。",
-                "Paths in `text` and `json` are relative to the project. Paths in `sarif` and `github` are relative to the \
-                 repository: `$GITHUB_WORKSPACE`, or the nearest directory upwards with a `.git`. Without either, they are \
-                 relative to the current directory.",
-            )),
-            Part::Text(both(
-                "`json` 每行是一个错误或警告，下面的键始终都有。位置的行列从 1 计，以字符为单位，不含末尾；`start` 和 `end` 以字节为单位。",
-                "In `json`, each line is an error or a warning. All keys below are always present. Lines and columns count from 1, \
-                 in characters, end exclusive. `start` and `end` are in bytes.",
-            )),
-            Part::Terms(
-                both("`json` 的键", "Keys of `json`"),
-                vec![
-                    ("code", both("错误码", "Code of the error")),
-                    (
-                        "severity",
-                        both("`error` 或 `warning`", "`error` or `warning`"),
-                    ),
-                    ("title", both("错误码的标题", "Title of the code")),
-                    ("message", both("错误信息", "Message")),
-                    (
-                        "primary",
-                        both(
-                            "主要位置：path、line、column、end_line、end_column、start、end、label",
-                            "Main place: path, line, column, end_line, end_column, start, end, label",
-                        ),
-                    ),
-                    (
-                        "secondary",
-                        both("其他位置的列表", "List of other places, in the same form"),
-                    ),
-                    ("notes", both("说明的列表", "List of notes")),
-                    (
-                        "fixes",
-                        both(
-                            "修改建议的列表，每项有 message、replacement、place",
-                            "List of suggested fixes, each with message, replacement, place",
-                        ),
-                    ),
-                ],
-            ),
-            Part::Examples(vec![
-                ("fcproto check", ""),
-                ("fcproto check --format json | jq -r .message", ""),
-                ("fcproto check --format sarif > fc.sarif", ""),
-                (
-                    "fcproto check --fix --dry-run",
-                    both("显示无需选择的修改", "Show the fixes that leave no choice"),
-                ),
-                (
-                    "fcproto check -q --deny warnings",
-                    both(
-                        "用于钩子：没有问题就不输出",
-                        "For a hook: silent if there is nothing to fix",
-                    ),
-                ),
-            ]),
-        ],
-        fails: both(
-            "规范有错误；有 `--deny warnings` 时也包括警告",
-            "Errors in the spec; with `--deny warnings` also warnings",
-        ),
-        speaks: both(
-            "所有格式中的错误和警告",
-            "Errors and warnings in every format",
-        ),
-    }
 }
 
 /// The findings that `--deny` counts as errors.

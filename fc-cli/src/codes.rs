@@ -3,7 +3,6 @@
 use clap::ValueEnum;
 use fc_codegen::codes::CodeMap;
 
-use crate::help::{Help, Part};
 use crate::lang::{both, lang};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
@@ -28,38 +27,6 @@ pub struct Options {
         help = both("输出格式", "Output format")
     )]
     format: Shown,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "列出已用、退役和空闲的功能码",
-            "List assigned, retired and free codes",
-        ),
-        details: vec![
-            Part::Text(both(
-                "先是下一条指令和上报取得的功能码，再是每个号段中的接口、退役的功能码及理由、空闲的数量。给出功能码时，只显示它们的情况。",
-                "The list begins with the codes that the next command and report get. Each range follows with its operations, its \
-                 retired codes with the reason, and the number of free codes. If you name codes, the list shows only these.",
-            )),
-            Part::Examples(vec![
-                ("fcproto codes", both("全部功能码", "All codes")),
-                (
-                    "fcproto codes 0x0123 0x0456",
-                    both(
-                        "显示使用它们的接口，或它们空闲",
-                        "Show their operations, or that they are free",
-                    ),
-                ),
-                ("fcproto codes --format json | jq -r .next_command", ""),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: both(
-            "`text` 格式；`json` 含两种语言",
-            "`text`; `json` has both languages",
-        ),
-    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -9,7 +9,6 @@ use fc_spec::model::Model;
 use fc_workshop::decode::{self, Record};
 
 use crate::complete;
-use crate::help::{Help, Part};
 use crate::lang::{both, lang, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
@@ -68,38 +67,6 @@ pub struct Options {
 enum Only {
     #[value(help = both("有错误的帧", "Frames with errors"))]
     Errors,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("解析字节中的帧", "Decode the frames in recorded bytes"),
-        details: vec![
-            Part::Text(both(
-                "按规范解析每一帧：包头各字段、正文各键的位置、值、单位和含义，以及第一个错误的位置。坏帧之后，从下一个完整的帧继续。\
-                 响应与请求按功能码和消息号配对。",
-                "Each frame is shown by the spec: the header fields, the position, value, unit and meaning of each key, and the place \
-                 of the first error. After a bad frame, decoding continues at the next whole frame. Responses are paired with requests \
-                 by code and message id.",
-            )),
-            Part::Examples(vec![
-                (
-                    "xxd -p dump.bin | fcproto decode",
-                    both("解析十六进制文本", "Decode hexadecimal text"),
-                ),
-                ("fcproto decode --only errors dump.bin", ""),
-                ("fcproto decode --format json capture.pcapng | jq .body", ""),
-                (
-                    "sudo tcpdump -U -w - tcp | fcproto decode",
-                    both("边抓边看", "Watch live traffic"),
-                ),
-            ]),
-        ],
-        fails: both(
-            "规范有错误，或显示的帧有错误",
-            "Errors in the spec, or in the shown frames",
-        ),
-        speaks: both("`text` 格式", "`text`"),
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

@@ -12,7 +12,6 @@ use fc_workshop::decode::hex;
 
 use crate::call::read_json;
 use crate::complete;
-use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -77,32 +76,6 @@ impl From<Side> for Direction {
             Side::Request => Self::Request,
             Side::Response => Self::Response,
         }
-    }
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("输出一帧的字节", "Print the bytes of a frame"),
-        details: vec![
-            Part::Text(both(
-                "不写值时，正文是规范中的示例。正文按规范检查。信封取示例，所以同样的参数总是得到同样的字节。",
-                "Without values, the body is the example of the spec. The body is checked by the spec. The envelope is that of the \
-                 examples, so the same arguments always give the same bytes.",
-            )),
-            Part::Examples(vec![
-                ("fcproto encode get_robot_sn", ""),
-                (
-                    "fcproto encode get_robot_sn | fcproto decode",
-                    both("查看这一帧的各部分", "Show the parts of the frame"),
-                ),
-                (
-                    "fcproto encode get_robot_sn --binary | nc HOST PORT",
-                    both("用其他程序发送", "Send it with another program"),
-                ),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: "",
     }
 }
 

@@ -6,7 +6,6 @@ use fc_diff::Rule;
 use fc_spec::diagnostic::{FaultCode, nearest};
 use fc_spec::lint;
 
-use crate::help::{Help, Part};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
@@ -19,41 +18,6 @@ pub struct Options {
         help = both("错误码或规则 [默认：列出全部]", "Error code or rule [default: list all]")
     )]
     code: Option<String>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("解释错误码或规则", "Explain an error code or a rule"),
-        details: vec![
-            Part::Text(both(
-                "错误码在报错的方括号里。FC07 开头的是 `fcproto diff` 的规则，FC08 开头的是 `fcproto lint` 的规则。",
-                "The code is in the brackets of an error. Codes that begin with FC07 are rules of `fcproto diff`, codes that \
-                 begin with FC08 are rules of `fcproto lint`.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto explain",
-                    both("列出全部错误码和规则", "List all codes and rules"),
-                ),
-                (
-                    "fcproto explain FC0012",
-                    both(
-                        "解释一个错误码；写 12 或 fc0012 也可以",
-                        "Explain a code; 12 and fc0012 work, too",
-                    ),
-                ),
-                (
-                    "fcproto explain FC0802",
-                    both(
-                        "解释一条规则；写它的名称也可以",
-                        "Explain a rule; its name works, too",
-                    ),
-                ),
-            ]),
-        ],
-        fails: "",
-        speaks: both("说明文字", "The explanations"),
-    }
 }
 
 pub fn run(options: &Options) -> Result<Status, Failure> {

@@ -10,7 +10,6 @@ use fc_spec::format::{Refused, format};
 use fc_spec::source::{FileId, SourceFile};
 use fc_spec::syntax::{limits, read_bytes, read_dir, read_files};
 
-use crate::help::{Help, Part};
 use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -35,52 +34,6 @@ pub struct Options {
         help = both("什么也不写；以 diff 显示修改", "Write nothing; show the changes as a diff")
     )]
     diff: bool,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("排版规范文件", "Format the files of the spec"),
-        details: vec![
-            Part::Text(both(
-                "键按统一的顺序排列，各行按统一的格式书写。注释和值逐字节不变，报文内容的顺序也不变。YAML 有错误或有未知键的文件保持不变，\
-                 已经排好版的文件不会重写。",
-                "Keys get one order and lines one layout. Comments and values stay the same to the byte, and so does the order of \
-                 everything that is sent. Files with errors in their YAML or with unknown keys stay unchanged. Formatted files are \
-                 not written again.",
-            )),
-            Part::Text(both(
-                "`--check --diff` 显示 diff 而不列文件名，有修改时以 1 退出。",
-                "`--check --diff` shows the diff instead of the names and exits with 1 if there is one.",
-            )),
-            Part::Text(both(
-                "`fcproto git setup --hooks` 安装在每次提交前检查排版的钩子。",
-                "`fcproto git setup --hooks` installs a hook that checks the layout before each commit.",
-            )),
-            Part::Examples(vec![
-                ("fcproto fmt", ""),
-                (
-                    "fcproto fmt --check",
-                    both(
-                        "用于 CI：列出未排版的文件",
-                        "For CI: list the files that are not formatted",
-                    ),
-                ),
-                ("fcproto fmt spec/types.yaml --diff", ""),
-                (
-                    "fcproto fmt - < spec/types.yaml",
-                    both(
-                        "用于编辑器：结果写到标准输出",
-                        "For editors: the result goes to standard output",
-                    ),
-                ),
-            ]),
-        ],
-        fails: both(
-            "有文件的 YAML 有错误；有 `--check` 时也包括未排版的文件",
-            "A file with errors in its YAML; with `--check` also a file that is not formatted",
-        ),
-        speaks: "",
-    }
 }
 
 impl Options {

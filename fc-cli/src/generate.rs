@@ -9,7 +9,6 @@ use fc_codegen::package::items::clashes;
 use fc_codegen::target::{FILE, part};
 use fc_spec::model::{Dump, Model};
 
-use crate::help::{Help, Part};
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -69,103 +68,6 @@ pub struct Options {
         help = both("生成这次发布的内容，例如 `2026.12`", "Generate this release, such as `2026.12`")
     )]
     as_of: Option<String>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "生成各语言的包、文档和标准帧",
-            "Generate packages, documentation and golden frames",
-        ),
-        details: vec![
-            Part::Terms(
-                both(
-                    "`fc.yaml` 可以列出的目标",
-                    "Targets that `fc.yaml` may list",
-                ),
-                vec![
-                    ("rust", both("Rust 包", "Rust package")),
-                    ("typescript", both("TypeScript 包", "TypeScript package")),
-                    ("python", both("Python 包", "Python package")),
-                    (
-                        "kotlin",
-                        both("Kotlin 和 Java 包", "Kotlin and Java package"),
-                    ),
-                    ("cpp", both("C++ 包", "C++ package")),
-                    (
-                        "markdown",
-                        both("中英文文档", "Documentation in Chinese and English"),
-                    ),
-                    ("vectors", both("标准帧", "Golden frames")),
-                    (
-                        "schema",
-                        both("规范语言的 JSON Schema", "JSON Schema of the spec language"),
-                    ),
-                    (
-                        "wireshark",
-                        both("Wireshark 的解析脚本", "Dissector for Wireshark"),
-                    ),
-                ],
-            ),
-            Part::Text(both(
-                "带 `plugin` 的目标由另一个程序生成，名称自定。",
-                "A target with a `plugin` has any other name. Another program generates it.",
-            )),
-            Part::Text(both(
-                "只覆盖或删除 `fc-manifest.json` 中列出的文件，它们由生成器写出。没有变化的文件不会重写。",
-                "The generator overwrites or removes only files of `fc-manifest.json`, which it wrote itself. Files that are up to \
-                 date stay untouched.",
-            )),
-            Part::Text(both(
-                "`--for` 和 `--as-of` 生成规范的一部分或一次发布。它们须与 `--out` 一起用。`--out` 的目录不能是项目，它会得到自己的 `fc-manifest.json`。\
-                 受众写在规范的 `availability` 中。",
-                "`--for` and `--as-of` generate a part of the spec or a release. They need `--out`, which cannot be a project. The \
-                 directory gets its own `fc-manifest.json`. The spec names audiences under `availability`.",
-            )),
-            Part::Text(both(
-                "`--watch` 在规范文件或 `fc.yaml` 改变时重新生成，并显示错误。",
-                "`--watch` generates again when a file of the spec or `fc.yaml` changes, and shows errors.",
-            )),
-            Part::Examples(vec![
-                ("fcproto generate", ""),
-                ("fcproto generate --only rust,vectors", ""),
-                (
-                    "fcproto generate --watch",
-                    both("编辑时持续运行", "Run while you edit"),
-                ),
-                (
-                    "fcproto generate --check",
-                    both(
-                        "用于 CI：有文件过期就失败",
-                        "For CI: fail if a file is stale",
-                    ),
-                ),
-                (
-                    "fcproto generate --for product_app --out ../product",
-                    both(
-                        "生成产品 app 的部分",
-                        "Generate the part of the product app",
-                    ),
-                ),
-                (
-                    "fcproto generate --as-of 2026.12 --out ../released",
-                    both("生成一次发布", "Generate a release"),
-                ),
-                (
-                    "fcproto inspect > model.json && fcproto generate --from model.json --root elsewhere",
-                    both(
-                        "没有 YAML 时生成同样的文件",
-                        "Generate the same files without the YAML",
-                    ),
-                ),
-            ]),
-        ],
-        fails: both(
-            "规范有错误；有 `--check` 时也包括过期的文件",
-            "Errors in the spec; with `--check` also stale files",
-        ),
-        speaks: "",
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -23,39 +22,6 @@ pub struct Options {
         help = both("含有 `fc-runtime` 和 `fc-derive` 的源码目录", "Checkout with `fc-runtime` and `fc-derive`")
     )]
     runtime: Option<PathBuf>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "创建一个可以运行的示例项目",
-            "Create a working example project",
-        ),
-        details: vec![
-            Part::Text(both(
-                "项目包含一个小协议、使用它的机器人和 app，以及让两者通信的测试。这些文件由你修改，其余内容由规范生成。`fc.yaml` 列出生成的目标和目录。",
-                "The project has a small protocol, a robot and an app that use it, and a test in which they talk. You edit these \
-                 files. Everything else is generated from the spec. `fc.yaml` lists the targets and their directories.",
-            )),
-            Part::Text(both(
-                "没有 `--runtime` 时，项目依赖构建本程序的那份源码。那份源码不在时，依赖同一版本的已发布 crate。",
-                "Without `--runtime`, the project depends on the checkout that this program was built from. If that is gone, it \
-                 depends on the published crates of this version.",
-            )),
-            Part::Examples(vec![
-                ("fcproto init lamp", ""),
-                (
-                    "cd lamp && cargo test",
-                    both("让机器人和 app 通信", "Let the robot and the app talk"),
-                ),
-            ]),
-        ],
-        fails: "",
-        speaks: both(
-            "也包括项目的 README、注释和示例",
-            "Also README, comments and examples of the project",
-        ),
-    }
 }
 
 /// A template in both languages.

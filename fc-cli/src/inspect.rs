@@ -3,7 +3,6 @@
 use clap::ValueEnum;
 use fc_codegen::target::part;
 
-use crate::help::{Help, Part};
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -26,42 +25,6 @@ pub struct Options {
         help = both("只含规范中这个受众的内容", "Include only the part of this audience of the spec")
     )]
     audience: Option<String>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "输出解析后的规范，JSON 或 YAML",
-            "Print the resolved spec as JSON or YAML",
-        ),
-        details: vec![
-            Part::Text(both(
-                "所有名称都已解析，所有默认值都已填入，其他程序不了解规范语言也能使用协议。`fcproto schema dump` 输出它的 JSON Schema。",
-                "All names are resolved and all defaults are filled in. Other programs can use the protocol without knowing the spec \
-                 language. `fcproto schema dump` prints the JSON Schema of the output.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto inspect --format json | jq '.operations[].name'",
-                    "",
-                ),
-                ("fcproto inspect --format yaml", ""),
-                (
-                    "fcproto inspect --for product_app",
-                    both("只含产品 app 的部分", "Only the part of the product app"),
-                ),
-                (
-                    "fcproto inspect > model.json",
-                    both(
-                        "供 `fcproto generate --from` 使用",
-                        "For `fcproto generate --from`",
-                    ),
-                ),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: "",
-    }
 }
 
 /// The output format.

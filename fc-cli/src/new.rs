@@ -4,7 +4,6 @@ use fc_codegen::output::replace_spec_file;
 use fc_spec::model::Kind;
 use fc_spec::scaffold::{NewOperation, scaffold};
 
-use crate::help::{Help, Part};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -51,39 +50,6 @@ pub struct Options {
         help = both("功能码，例如 `0x0A20` [默认：下一个空闲的]", "Code, such as `0x0A20` [default: the next free one]")
     )]
     code: Option<u16>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("新增指令、上报或流", "Add a command, report or stream"),
-        details: vec![
-            Part::Text(both(
-                "新内容写入分组的文件，放在同类的最后一项之后。结果没有错误，需要你填写的地方有标记。规范在前后都没有错误时才会修改。",
-                "The new operation goes into the file of its group, after the last one of its kind. The result has no errors, and \
-                 marks show where you have to write. The spec changes only if it has no errors before and after.",
-            )),
-            Part::Text(both(
-                "功能码取自用 `groups` 指明这个分组的号段。没有这样的号段时，取自不写 `groups` 的号段，优先取分组已有功能码所在的号段。",
-                "The code comes from a range that names the group under `groups`. Without such a range, it comes from the ranges \
-                 without `groups`, first from those in which the group has codes.",
-            )),
-            Part::Text(both(
-                "没有 `--started-by` 和 `--code` 的流暂时没有功能码。",
-                "A stream without `--started-by` and `--code` has no code yet.",
-            )),
-            Part::Examples(vec![
-                ("fcproto new get_battery --group status", ""),
-                ("fcproto new battery_low --group status --report", ""),
-                (
-                    "fcproto new battery_curve --group status --stream --started-by get_battery",
-                    "",
-                ),
-                ("fcproto new set_volume --group settings --code 0x0A20", ""),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: "",
-    }
 }
 
 /// Parses a code in hexadecimal with `0x` or in decimal.

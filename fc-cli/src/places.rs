@@ -6,7 +6,6 @@ use fc_spec::load::load;
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
 
-use crate::help::{Help, Part};
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -21,44 +20,6 @@ pub struct Options {
         help = both("名称、`Station.name` 这样的路径，或功能码", "Name, path such as `Station.name`, or code")
     )]
     name: String,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "查找名称或功能码在规范中的位置",
-            "Find where a name or code is defined",
-        ),
-        details: vec![
-            Part::Text(both(
-                "每个同名的内容一行：文件、行、列和种类，下面是关于它的注释。规范有错误时也能用，限于能读出的部分。",
-                "The output has one line for each thing of that name: file, line, column and kind, with its comments below. It also \
-                 works on a spec with errors, as far as that can be read.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto where get_battery",
-                    both(
-                        "一个接口，或任何同名的内容",
-                        "An operation, or anything else of that name",
-                    ),
-                ),
-                (
-                    "fcproto where 0x0123",
-                    both("使用这个功能码的接口", "Operations with this code"),
-                ),
-                (
-                    "fcproto where Station.name",
-                    both(
-                        "类型的字段、枚举值或变体",
-                        "A field, an enum value or a variant of a type",
-                    ),
-                ),
-            ]),
-        ],
-        fails: "",
-        speaks: "",
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

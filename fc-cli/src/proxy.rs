@@ -16,7 +16,6 @@ use fc_workshop::view::View;
 use serde_json::json;
 
 use crate::endpoint::{self, Ports, at_port, with_port};
-use crate::help::{Help, Part};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -75,48 +74,6 @@ pub struct Options {
         help = both("输出格式", "Output format")
     )]
     format: Shown,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "在 app 与机器人之间转发，并显示每一帧",
-            "Forward between an app and a robot, and show each frame",
-        ),
-        details: vec![
-            Part::Text(both(
-                "让 app 连接代理，代理再连接机器人。所有字节原样转发，包括未知的功能码和不是帧的字节。每帧显示一行：接口、消息号、\
-                 长度、时间、方向、响应时间和错误。标准输出的第一行是两个端口的地址。Ctrl-C 结束。",
-                "Connect the app to the proxy, which connects to the robot. All bytes are forwarded unchanged, also unknown codes and \
-                 bytes that are no frame. Each frame is one line: operation, message id, length, time, direction, response time and \
-                 error. The first line on standard output has the addresses of both ports. Ctrl-C ends the proxy.",
-            )),
-            Part::Text(both(
-                "`--fault` 注入故障，可重复：`delay=毫秒`、`drop-acknowledgement`、`duplicate-response`、`wrong-id`、`cut`、\
-                 `bad-digest`、`slow=每秒字节数`、`unknown-key`、`unknown-value`、`compress`。后面可接接口名称或功能码，以及 `10%`、\
-                 `every=5`、`only=3` 或 `after=3`。种子相同，同样的帧得到同样的故障。",
-                "`--fault` injects a fault and can be repeated: `delay=MS`, `drop-acknowledgement`, `duplicate-response`, `wrong-id`, \
-                 `cut`, `bad-digest`, `slow=BYTES_PER_SECOND`, `unknown-key`, `unknown-value`, `compress`. Add the name or code of an \
-                 operation, and `10%`, `every=5`, `only=3` or `after=3`. The same seed gives the same frames the same faults.",
-            )),
-            Part::Examples(vec![
-                ("fcproto proxy --to robot.local", ""),
-                (
-                    "fcproto proxy --to robot.local --fault drop-acknowledgement:50% --seed 7",
-                    both("丢掉一半应答", "Lose half of the acknowledgements"),
-                ),
-                (
-                    "fcproto proxy --to robot.local --fault delay=2000:get_robot_sn:every=3",
-                    both(
-                        "每第三帧 get_robot_sn 晚到两秒",
-                        "Every third frame of get_robot_sn is late by two seconds",
-                    ),
-                ),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: both("`text` 格式", "`text`"),
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

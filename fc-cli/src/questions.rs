@@ -4,7 +4,6 @@ use clap::ValueEnum;
 use fc_codegen::questions::{By, List};
 use fc_spec::model::{AnswerKind, Question, Text};
 
-use crate::help::{Help, Part};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -52,45 +51,6 @@ pub struct Options {
         help = both("输出格式", "Output format")
     )]
     format: Shown,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "列出待协议负责人答复的问题",
-            "List open questions for the protocol owner",
-        ),
-        details: vec![
-            Part::Text(both(
-                "包括规范中的问题、源文档缺失的内容和推断，最紧急的在前。给出 ID 时，还显示要修改的行。",
-                "The list has the questions of the spec, the losses of the source document and the inferences, most urgent first. \
-                 With IDs, it also shows the lines to edit.",
-            )),
-            Part::Examples(vec![
-                ("fcproto questions", ""),
-                (
-                    "fcproto questions C040",
-                    both(
-                        "一个问题，连同要修改的行",
-                        "One question with the lines to edit",
-                    ),
-                ),
-                ("fcproto questions --group task --lang zh", ""),
-                (
-                    "fcproto questions --format csv --lang zh > questions.csv",
-                    both(
-                        "给负责人填写的表格，由 `fcproto settle --from` 读入",
-                        "A sheet for the owner, which `fcproto settle --from` reads",
-                    ),
-                ),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: both(
-            "除 `json` 外的格式；`json` 含两种语言",
-            "Every format except `json`, which has both languages",
-        ),
-    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

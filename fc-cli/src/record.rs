@@ -9,7 +9,6 @@ use fc_reflect::Reflector;
 use fc_spec::model::Model;
 use fc_workshop::recording::{Origin, Recorder};
 
-use crate::help::{Help, Part};
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -28,32 +27,6 @@ pub struct Options {
         help = both("写入的 MCAP 文件", "MCAP file to write")
     )]
     out: PathBuf,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "把通信写成 MCAP，供 Foxglove 等软件查看",
-            "Write traffic as MCAP for viewers such as Foxglove",
-        ),
-        details: vec![
-            Part::Text(both(
-                "每个接口的每个方向一个 JSON 通道，附 JSON Schema；`/fc/frames` 是原始的帧；报文中的图片是 `foxglove.CompressedImage`，\
-                 错误是 `foxglove.Log`；规范作为附件，指纹在元数据中。",
-                "Each side of each operation is a JSON channel with a JSON Schema. `/fc/frames` has the raw frames, pictures in messages are \
-                 `foxglove.CompressedImage`, and errors are `foxglove.Log`. The spec is attached, and its fingerprint is in the metadata.",
-            )),
-            Part::Examples(vec![
-                ("fcproto record capture.pcapng --out run.mcap", ""),
-                (
-                    "sudo tcpdump -U -w - tcp | fcproto record --out run.mcap",
-                    both("边抓边录", "Record live traffic"),
-                ),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: "",
-    }
 }
 
 /// Begins a recording in a file. The recorder writes whole chunks, so the file has no buffer.

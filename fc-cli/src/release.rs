@@ -11,7 +11,6 @@ use fc_spec::model::{Model, Text};
 use fc_spec::revision::{renumbered, without_waiver};
 use fc_spec::source::Sources;
 
-use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -41,49 +40,6 @@ pub struct Options {
         help = both("发布日期 [默认：今天]", "Date of the release [default: today]")
     )]
     today: Option<String>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("以一个版本号发布规范", "Release the spec under a number"),
-        details: vec![
-            Part::Text(both(
-                "版本号写入规范的 `version`。规范的内容冻结在它旁边的 `releases/` 中，格式同 `fcproto inspect`；\
-                 自上一次发布以来的变更成为其中中英文变更记录的一节。此后 `fcproto diff` 与这次发布比较，`fcproto generate --as-of` 生成任一次发布。",
-                "The number becomes the `version` of the spec. The spec is frozen under `releases/` next to it, in the format of \
-                 `fcproto inspect`. The changes since the last release become a section of the changelogs there, in Chinese and \
-                 English. From then on, `fcproto diff` compares with this release, and `fcproto generate --as-of` generates any \
-                 release.",
-            )),
-            Part::Text(both(
-                "发布会删除 `fcproto diff` 的豁免，它们的理由留在变更记录中。",
-                "A release removes the waivers of `fcproto diff`. Their reasons are in the changelogs.",
-            )),
-            Part::Text(both(
-                "版本号须与变更相称。日期式版本号（2026.12）只须更大，但每个通信不兼容的变更都要有豁免。其他版本号（2.1.0）：\
-                 通信不兼容时第一位增加，程序要知道新内容时第二位增加，只改文字时第三位增加。第一位为 0 时，通信不兼容也只须第二位增加。",
-                "The number has to fit the changes. A number by the calendar (2026.12) only has to be later, but each change that \
-                 breaks messages needs a waiver. In other numbers (2.1.0), the first part rises if messages break, the second part \
-                 if programs have something new to know, and the third part for texts. While the first part is 0, the second part \
-                 rises if messages break.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto release 2026.12 --dry-run",
-                    both(
-                        "显示能否发布，以及变更记录的内容",
-                        "Show if the release is possible, and its changelogs",
-                    ),
-                ),
-                ("fcproto release 2026.12 && fcproto generate", ""),
-            ]),
-        ],
-        fails: both(
-            "规范有错误，或版本号与变更不相称",
-            "Errors in the spec, or a number that does not fit the changes",
-        ),
-        speaks: "",
-    }
 }
 
 /// Parses the number of a release on the command line.

@@ -6,7 +6,6 @@ use fc_codegen::output::replace_spec_file;
 use fc_spec::model::{Lang, Text};
 use fc_spec::retire::retire;
 
-use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -31,34 +30,6 @@ pub struct Options {
         help = both("显示修改，什么也不写", "Show the changes and write nothing")
     )]
     dry_run: bool,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "移除一个接口并退役其功能码",
-            "Remove an operation and retire its code",
-        ),
-        details: vec![
-            Part::Text(both(
-                "功能码连同理由记为退役，以后不会再分配。只有它使用的类型一并移除。规范在前后都没有错误时才会修改：先改掉其他提到它的地方，\
-                 它所答复的源文档缺失也要在别处答复。",
-                "The code goes to the retired ones with the reason and is never assigned again. Types that only this operation uses \
-                 are removed, too. The spec changes only if it has no errors before and after. Change everything else that names \
-                 the operation first, and answer its gaps of the source document elsewhere.",
-            )),
-            Part::Text(both(
-                "之后仍在使用它的 app 或机器人会被拒绝。要提前通知，先写 `deprecated`。",
-                "An app or robot that still uses it is refused from then on. To warn beforehand, write `deprecated` first.",
-            )),
-            Part::Examples(vec![(
-                "fcproto retire get_battery --zh 由状态上报代替 --en 'Replaced by the status report'",
-                "",
-            )]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: "",
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

@@ -3,7 +3,6 @@
 use clap::ValueEnum;
 use fc_spec::model::Languages;
 
-use crate::help::{Help, Part};
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -19,29 +18,6 @@ pub struct Options {
         help = both("描述的对象", "Schema to print")
     )]
     of: Of,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "输出规范语言、`fc.yaml` 或模型的 JSON Schema",
-            "Print the JSON Schema of the spec, `fc.yaml` or a dump",
-        ),
-        details: vec![
-            Part::Text(both(
-                "编辑器的 YAML 语言服务器用它补全和检查规范文件；`fcproto generate` 也把它写到规范旁边。`dump` 的 Schema 供插件和其他程序使用。",
-                "YAML language servers of editors complete and check spec files with it. `fcproto generate` also writes it next to the \
-                 spec. The schema of `dump` is for plugins and other programs.",
-            )),
-            Part::Examples(vec![
-                ("fcproto schema", ""),
-                ("fcproto schema project > fc-project.schema.json", ""),
-                ("fcproto schema dump > dump.schema.json", ""),
-            ]),
-        ],
-        fails: "",
-        speaks: "",
-    }
 }
 
 /// The subject of a schema.

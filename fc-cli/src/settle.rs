@@ -7,7 +7,6 @@ use fc_codegen::questions::read;
 use fc_spec::load::{Said, settle};
 use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
 
-use crate::help::{Help, Part};
 use crate::lang::{both, counted, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -119,56 +118,6 @@ pub struct Options {
         help = both("显示修改，什么也不写", "Show the changes and write nothing")
     )]
     dry_run: bool,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "记录协议负责人的答复",
-            "Record an answer of the protocol owner",
-        ),
-        details: vec![
-            Part::Text(both(
-                "修改问题涉及的内容，写明由谁在何时确认，文件的其余部分逐字节不变。规范在前后都没有错误时才会修改。",
-                "The command changes the facts of the question and adds the person and the date. Everything else in the files stays \
-                 the same to the byte. The spec changes only if it has no errors before and after.",
-            )),
-            Part::Text(both(
-                "`--confirm` 用于推断、决定和行为：它们现有的内容正确。",
-                "`--confirm` is for inferences, decisions and behaviours that are right already.",
-            )),
-            Part::Text(both(
-                "`--from` 读入填好的 `fcproto questions --format csv` 表格。其中有一个答复不能写入，就一个也不写。",
-                "`--from` reads a sheet of `fcproto questions --format csv` that has been filled in. If one answer cannot be \
-                 written, none is.",
-            )),
-            Part::Examples(vec![
-                ("fcproto settle C012 --code 0x1234 --by 张伟", ""),
-                (
-                    "fcproto settle C034 --unit s --by 张伟 --reference 'mail of 2026-11-20'",
-                    "",
-                ),
-                (
-                    "fcproto settle C056.get_place --set unit=m --set yaw.unit=rad --by 张伟",
-                    "",
-                ),
-                (
-                    "fcproto settle get_battery.response --response body.yaml --by 张伟",
-                    "",
-                ),
-                (
-                    "fcproto settle battery_low.code --confirm --by 张伟",
-                    both("推断正确", "The inference is right"),
-                ),
-                (
-                    "fcproto settle --from answers.csv",
-                    both("填好的表格", "A sheet that has been filled in"),
-                ),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: "",
-    }
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {

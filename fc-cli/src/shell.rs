@@ -6,7 +6,7 @@ use clap::Command;
 use clap_complete::Shell;
 use clap_complete::env::Shells;
 
-use crate::help::{Help, Part, described};
+use crate::help::described;
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
@@ -18,41 +18,6 @@ pub struct Completions {
     shell: Shell,
 }
 
-pub fn completions_help() -> Help {
-    Help {
-        summary: both(
-            "输出 shell 的补全脚本",
-            "Print a completion script for a shell",
-        ),
-        details: vec![
-            Part::Text(both(
-                "补全命令和选项；在 `call`、`encode` 和 `decode --name` 后，还按规范补全接口、键和值。脚本在补全时运行 `fcproto`。",
-                "Commands and options are completed. After `call`, `encode` and `decode --name`, so are the operations, keys and values \
-                 of the spec. The script runs `fcproto` at each completion.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto completions bash > ~/.local/share/bash-completion/completions/fcproto",
-                    "",
-                ),
-                (
-                    "fcproto completions zsh > ~/.zfunc/_fcproto",
-                    both(
-                        "`~/.zfunc` 须在 `$fpath` 中",
-                        "`~/.zfunc` has to be in `$fpath`",
-                    ),
-                ),
-                (
-                    "fcproto completions fish > ~/.config/fish/completions/fcproto.fish",
-                    "",
-                ),
-            ]),
-        ],
-        fails: "",
-        speaks: "",
-    }
-}
-
 /// Options of `fcproto man`.
 #[derive(Debug, clap::Args)]
 pub struct Man {
@@ -61,21 +26,6 @@ pub struct Man {
         help = both("写入的目录，没有则创建", "Directory to write to; created if missing")
     )]
     directory: PathBuf,
-}
-
-pub fn man_help() -> Help {
-    Help {
-        summary: both(
-            "写出手册页，每条命令一页",
-            "Write manual pages, one for each command",
-        ),
-        details: vec![Part::Examples(vec![(
-            "fcproto man ~/.local/share/man/man1 && man fcproto-generate",
-            "",
-        )])],
-        fails: "",
-        speaks: both("命令和选项的说明", "Descriptions of commands and options"),
-    }
 }
 
 pub fn completions(options: &Completions) -> Result<Status, Failure> {

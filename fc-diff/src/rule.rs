@@ -116,7 +116,10 @@ impl Language {
 }
 
 /// Returns the number of a code: 25 for `FC0725`.
-#[allow(clippy::panic, reason = "it is only used for constants, so the compiler reports it")]
+#[allow(
+    clippy::panic,
+    reason = "it is only used for constants, so the compiler reports it"
+)]
 pub(crate) const fn number(code: &str) -> u8 {
     match code.as_bytes() {
         [

@@ -17,7 +17,6 @@ use fc_workshop::facts;
 
 use crate::allow::{self, Allowed};
 use crate::complete;
-use crate::help::{Help, Part};
 use crate::input;
 use crate::lang::{both, lang, said};
 use crate::new::code;
@@ -125,65 +124,6 @@ enum Shown {
     Text,
     #[value(help = both("每条消息一行 JSON", "One line of JSON per message"))]
     Json,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("向机器人发送一条指令", "Send a command to a robot"),
-        details: vec![
-            Part::Text(both(
-                "请求按规范检查后才发送。值写成 `键=值`：键是报文中的键名或代码中的名称，用点号进入对象，用序号进入列表；枚举值写名称，\
-                 列表用逗号分隔。没有给出的键不发送。",
-                "The request is checked by the spec before it is sent. A value is `key=value`. The key is a wire key or a name in code; \
-                 dots lead into objects, and indexes into lists. Enum values have names, and lists have commas. Keys that you leave out \
-                 are not sent.",
-            )),
-            Part::Text(both(
-                "只有影响为 `read` 的指令不需要 `--allow`。",
-                "Only commands with the effect `read` need no `--allow`.",
-            )),
-            Part::Text(both(
-                "`--interactive` 逐行读取 `fcproto call` 之后的参数，全部使用同一个连接，并应答上报。Tab 补全名称、键和值，方向键取历史。",
-                "`--interactive` reads the arguments of `fcproto call` line by line. All lines use one connection, which acknowledges \
-                 reports. Tab completes names, keys and values, and the arrows recall earlier lines.",
-            )),
-            Part::Terms(
-                both("其他退出码", "Other exit statuses"),
-                vec![
-                    (
-                        "3",
-                        both(
-                            "机器人拒绝，或过程失败",
-                            "Refused by the robot, or the process failed",
-                        ),
-                    ),
-                    (
-                        "4",
-                        both(
-                            "没有响应，或响应不合规范",
-                            "No response, or one that breaks the spec",
-                        ),
-                    ),
-                ],
-            ),
-            Part::Examples(vec![
-                (
-                    "fcproto call get_robot_sn --to robot.local",
-                    both("查询一台机器人", "Ask a robot"),
-                ),
-                ("fcproto call --list", both("可用的指令", "The commands")),
-                (
-                    "fcproto call go_recharge --allow motion --follow",
-                    both("直到充电过程结束", "Until charging has ended"),
-                ),
-                ("fcproto call get_robot_sn --format json | jq .body", ""),
-                ("fcproto call --interactive --to robot.local", ""),
-                ("fcproto call --raw 0x0110 7b7d --allow motion", ""),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: both("`text` 格式", "`text`"),
-    }
 }
 
 /// A request that is ready to be sent.

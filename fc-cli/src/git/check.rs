@@ -9,8 +9,7 @@ use fc_codegen::output::{MANIFEST, generated};
 use fc_codegen::target::FILE;
 
 use super::{git, git_with, parts};
-use crate::help::{Help, Part};
-use crate::lang::{both, said};
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::{Project, is_there};
@@ -19,31 +18,6 @@ use crate::{check, fmt, generate, print};
 /// Options of `fcproto git check`.
 #[derive(Debug, clap::Args)]
 pub struct Options {}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("检查暂存的内容", "Check the staged files"),
-        details: vec![
-            Part::Text(both(
-                "对将要提交的文件依次运行 `fcproto fmt --check`、`fcproto check --deny warnings` 和 `fcproto generate --check`。没有暂存的修改和没有加入 git 的文件不起作用。\
-                 git 忽略的生成文件取自工作区。",
-                "The command runs `fcproto fmt --check`, `fcproto check --deny warnings` and `fcproto generate --check` on the \
-                 files of the next commit. Changes that are not staged and untracked files have no influence. Generated \
-                 files that git ignores come from the working tree.",
-            )),
-            Part::Text(both(
-                "`fcproto git setup --hooks` 的钩子在每次提交前运行它。",
-                "The hook of `fcproto git setup --hooks` runs it before each commit.",
-            )),
-            Part::Examples(vec![("fcproto git check", "")]),
-        ],
-        fails: both(
-            "暂存的规范未排版、有错误或警告，或有文件过期",
-            "The staged spec is not formatted or has errors or warnings, or files are stale",
-        ),
-        speaks: "",
-    }
-}
 
 pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;

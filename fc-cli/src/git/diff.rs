@@ -10,7 +10,6 @@ use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
 
 use super::{git, spec_file};
-use crate::help::{Help, Part};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -38,64 +37,6 @@ pub struct Options {
         help = both("git 传入的新旧两个版本", "Both versions, as git passes them")
     )]
     versions: Vec<String>,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "供 git 比较一个规范文件",
-            "Compare a file of the spec for git",
-        ),
-        details: vec![
-            Part::Text(both(
-                "这是 git 的 diff 驱动。它对一个文件显示 `fcproto diff` 的结果。规范的其余文件取自工作区；与某个版本不匹配时，取自含有该版本的提交。\
-                 没有匹配的规范，或只改了注释和排版时，逐行比较。",
-                "This is a diff driver of git. It shows the result of `fcproto diff` for one file. The rest of the spec comes from the \
-                 working tree. If a version does not fit it, the rest comes from the commits with that version. If no spec fits, or if \
-                 only comments and layout have changed, lines are compared.",
-            )),
-            Part::Terms(
-                both("`VERSIONS` 中依次是", "Order of `VERSIONS`"),
-                vec![
-                    (
-                        "1-3",
-                        both(
-                            "旧版本的文件、对象和模式",
-                            "File, object and mode of the old version",
-                        ),
-                    ),
-                    (
-                        "4-6",
-                        both(
-                            "新版本的文件、对象和模式",
-                            "File, object and mode of the new version",
-                        ),
-                    ),
-                    (
-                        "7-8",
-                        both(
-                            "改名时：新的路径和 git 的说明",
-                            "After a rename: the new path and a note of git",
-                        ),
-                    ),
-                ],
-            ),
-            Part::Text(both(
-                "有冲突的文件没有 `VERSIONS`。",
-                "A file in conflict has no `VERSIONS`.",
-            )),
-            Part::Examples(vec![
-                (
-                    "git diff",
-                    both("在 `fcproto git setup` 之后", "After `fcproto git setup`"),
-                ),
-                ("git log --patch --ext-diff -- spec", ""),
-                ("git diff --no-ext-diff", both("逐行比较", "Compare lines")),
-            ]),
-        ],
-        fails: "",
-        speaks: both("变更", "The changes"),
-    }
 }
 
 /// A version of the file.

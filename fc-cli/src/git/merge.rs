@@ -8,7 +8,6 @@ use fc_codegen::output::{MANIFEST, generated, merge_manifests};
 use fc_spec::merge::merge;
 
 use super::spec_file;
-use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -38,22 +37,6 @@ pub struct Options {
         help = both("文件的路径（`%P`），从工作区根目录算起", "Path of the file (`%P`) from the root of the working tree")
     )]
     path: PathBuf,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both("供 git 合并一个文件", "Merge a file for git"),
-        details: vec![Part::Text(both(
-            "这是 git 的 merge 驱动。生成的文件从不留下冲突：双方改了同样的行时保留本分支的，由 `fcproto git stage` 重新生成。\
-                 规范文件中，双方在同一处新增的指令、上报、流、类型、枚举值和变更记录都保留。双方改了同一内容时，以及在其他文件中，冲突由 git 照常处理。",
-            "This is a merge driver of git. Generated files are never left in conflict: where both sides have changed the same \
-                 lines, those of this branch are kept, and `fcproto git stage` generates the file again. In files of the spec, commands, \
-                 reports, streams, types, enum values and changelog entries that both sides add at the same place are all kept. Other \
-                 conflicts are those of git.",
-        ))],
-        fails: both("有冲突", "Conflicts"),
-        speaks: "",
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

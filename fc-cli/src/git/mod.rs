@@ -11,8 +11,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::help::{Help, Part};
-use crate::lang::{both, said};
+use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
@@ -22,37 +21,6 @@ use crate::project::Project;
 pub struct Options {
     #[command(subcommand)]
     command: Action,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "让 git 合并和比较规范文件",
-            "Merge and compare files of the spec in git",
-        ),
-        details: vec![
-            Part::Text(both(
-                "每份克隆运行一次 `fcproto git setup`。之后 git 自己调用 `diff` 和 `merge`。",
-                "Run `fcproto git setup` once in each clone. From then on, git calls `diff` and `merge` itself.",
-            )),
-            Part::Examples(vec![
-                (
-                    "fcproto git setup",
-                    both("配置这份克隆", "Set up this clone"),
-                ),
-                (
-                    "fcproto git setup --hooks",
-                    both("同上，并检查每次提交", "The same, and check each commit"),
-                ),
-                (
-                    "fcproto git stage",
-                    both("生成并暂存", "Generate and stage"),
-                ),
-            ]),
-        ],
-        fails: "",
-        speaks: "",
-    }
 }
 
 /// A command with its options.

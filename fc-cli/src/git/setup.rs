@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use super::attributes::{DRIVER, missing};
 use super::git;
-use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -21,52 +20,6 @@ pub struct Options {
         help = both("也安装 `pre-commit` 和 `post-merge` 钩子", "Also install the hooks `pre-commit` and `post-merge`")
     )]
     hooks: bool,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "配置这份克隆，由 `fcproto` 合并和比较文件",
-            "Set up this clone to merge and compare with `fcproto`",
-        ),
-        details: vec![
-            Part::Text(both(
-                "只写这份克隆的 git 配置，并列出 `.gitattributes` 缺少的行。这些行指明由 `fcproto` 处理的文件，须提交到仓库。没有配置的克隆仍由 git 自己合并和比较。",
-                "The command writes only to the git configuration of this clone and lists the lines that `.gitattributes` lacks. These \
-                 lines name the files for `fcproto`; commit them. In other clones, git merges and compares as usual.",
-            )),
-            Part::Terms(
-                both("钩子", "Hooks"),
-                vec![
-                    (
-                        "pre-commit",
-                        both(
-                            "运行 `fcproto git check`；暂存的规范未排版、有错误或警告，或有文件过期时，中止提交；`git commit --no-verify` 跳过检查",
-                            "Runs `fcproto git check`. It stops a commit if the staged spec is not formatted or has errors or warnings, or \
-                             if files are stale. `git commit --no-verify` skips it",
-                        ),
-                    ),
-                    (
-                        "post-merge",
-                        both(
-                            "合并后重新生成，把变化并入合并的提交",
-                            "Generates after a merge and adds the changes to the merge commit",
-                        ),
-                    ),
-                ],
-            ),
-            Part::Text(both(
-                "不是由 `fcproto` 写的同名钩子保持不变，并报错。",
-                "Hooks of other programs stay unchanged, and the command ends with an error.",
-            )),
-            Part::Examples(vec![
-                ("fcproto git setup", ""),
-                ("fcproto git setup --hooks", ""),
-            ]),
-        ],
-        fails: "",
-        speaks: "",
-    }
 }
 
 /// The line that identifies a hook of this program.

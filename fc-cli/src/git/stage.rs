@@ -7,7 +7,6 @@ use fc_codegen::output::{MANIFEST, generated};
 
 use super::{git, git_with, parts};
 use crate::generate;
-use crate::help::{Help, Part};
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -21,34 +20,6 @@ pub struct Options {
         help = both("把暂存的全部修改并入上一次提交", "Add all staged changes to the last commit")
     )]
     amend: bool,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "生成，再暂存生成的文件",
-            "Generate, then stage the generated files",
-        ),
-        details: vec![
-            Part::Text(both(
-                "只暂存生成的文件，不含 git 忽略的文件。",
-                "Only generated files are staged, without those that git ignores.",
-            )),
-            Part::Text(both(
-                "git 合并时规范文件还不完整，因此在合并之后生成。`fcproto git setup --hooks` 的钩子在合并后运行它。`git rebase` 和 `git cherry-pick` \
-                 没有这样的钩子，由你运行。",
-                "While git merges, the files of the spec are incomplete, so generation comes after the merge. The hook of `fcproto git \
-                 setup --hooks` runs this command then. `git rebase` and `git cherry-pick` have no such hook: run it yourself.",
-            )),
-            Part::Examples(vec![
-                ("fcproto git stage && git commit", ""),
-                ("git rebase main --exec 'fcproto git stage --amend'", ""),
-                ("git cherry-pick topic && fcproto git stage --amend", ""),
-            ]),
-        ],
-        fails: both("规范有错误", "Errors in the spec"),
-        speaks: "",
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

@@ -1,7 +1,7 @@
 //! Help in the language of the run.
 //!
-//! Each command has a [`Help`] next to its options. The terminal, the manual pages and the page of the reference show the
-//! same texts. They are wrapped once, here: clap has no `wrap_help`.
+//! The texts of each command are in `texts`; those of its options are next to them. The terminal, the manual pages and the
+//! page of the reference show the same texts. They are wrapped once, here: clap has no `wrap_help`.
 
 mod page;
 mod terminal;
@@ -10,13 +10,8 @@ mod wrap;
 
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
 
-use crate::args::{self, Args};
+use crate::args::Args;
 use crate::lang::both;
-use crate::{
-    call, certify, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate,
-    git, init, inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire,
-    schema, settle, shell,
-};
 
 pub use page::{Options as PageOptions, run as page};
 
@@ -41,60 +36,82 @@ pub enum Part {
     /// A heading, and terms with their meanings.
     Terms(&'static str, Vec<(&'static str, &'static str)>),
     /// A heading, and lines that are shown unchanged.
-    Code(&'static str, &'static str),
+    Code(&'static str, Vec<&'static str>),
     /// Command lines with their purpose.
     Examples(Vec<(&'static str, &'static str)>),
 }
 
+/// Lists the texts in `texts`, by the names of commands, in Chinese and in English.
+macro_rules! texts {
+    ($($name:literal)+) => {
+        [$((
+            $name,
+            include_str!(concat!("texts/", $name, ".zh.md")),
+            include_str!(concat!("texts/", $name, ".md")),
+        )),+]
+    };
+}
+
+static TEXTS: [(&str, &str, &str); 38] = texts! {
+    "call" "certify" "changelog" "check" "codes" "completions" "decode" "diff" "drift" "encode" "explain" "fcproto" "fmt"
+    "generate" "git" "git-check" "git-diff" "git-merge" "git-setup" "git-stage" "help" "help-page" "init" "inspect" "lint"
+    "lsp" "man" "mock" "new" "package" "proxy" "questions" "record" "release" "retire" "schema" "settle" "where"
+};
+
 /// Returns the help of the command with this path.
 fn of(path: &[&str]) -> Option<Help> {
-    Some(match path {
-        [] => args::help(),
-        ["init"] => init::help(),
-        ["check"] => check::help(),
-        ["explain"] => explain::help(),
-        ["fmt"] => fmt::help(),
-        ["lint"] => lint::help(),
-        ["new"] => new::help(),
-        ["retire"] => retire::help(),
-        ["diff"] => diff::help(),
-        ["changelog"] => changelog::help(),
-        ["release"] => release::help(),
-        ["generate"] => generate::help(),
-        ["package"] => package::help(),
-        ["inspect"] => inspect::help(),
-        ["where"] => places::help(),
-        ["codes"] => codes::help(),
-        ["questions"] => questions::help(),
-        ["settle"] => settle::help(),
-        ["call"] => call::help(),
-        ["mock"] => mock::help(),
-        ["proxy"] => proxy::help(),
-        #[cfg(feature = "record")]
-        ["record"] => crate::record::help(),
-        ["certify"] => certify::help(),
-        ["decode"] => decode::help(),
-        ["encode"] => encode::help(),
-        ["drift"] => drift::help(),
-        ["git"] => git::help(),
-        ["git", "setup"] => git::setup::help(),
-        ["git", "check"] => git::check::help(),
-        ["git", "stage"] => git::stage::help(),
-        ["git", "diff"] | ["git-diff"] => git::diff::help(),
-        ["git", "merge"] => git::merge::help(),
-        ["schema"] => schema::help(),
-        ["lsp"] => lsp::help(),
-        ["completions"] => shell::completions_help(),
-        ["man"] => shell::man_help(),
-        ["help-page"] => page::help(),
-        [.., "help"] => Help {
-            summary: both("显示一条命令的帮助", "Show the help of a command"),
-            details: Vec::new(),
-            fails: "",
-            speaks: both("全部", "all of it"),
-        },
-        _ => return None,
-    })
+    let name = match path {
+        [] => "fcproto".to_owned(),
+        [.., "help"] => "help".to_owned(),
+        path => path.join("-"),
+    };
+    let (_, zh, en) = TEXTS.iter().find(|(known, ..)| *known == name)?;
+    Some(Help::parse(both(zh, en)))
+}
+
+impl Help {
+    /// Reads a text: a line with the summary, lines with `fails: ` and `speaks: `, and blocks with the details.
+    ///
+    /// A block is a paragraph, examples that begin with `$ `, or a heading `## ` above terms `- term — meaning` or above
+    /// indented code. The purpose of an example follows ` # `.
+    fn parse(text: &'static str) -> Self {
+        let (head, details) = text.split_once("\n\n").unwrap_or((text, ""));
+        let said = |key: &str| head.lines().find_map(|line| line.strip_prefix(key));
+        let blocks = details.split("\n\n").filter(|it| !it.is_empty());
+        Self {
+            summary: head.lines().next().unwrap_or_default(),
+            details: blocks.map(Part::parse).collect(),
+            fails: said("fails: ").unwrap_or_default(),
+            speaks: said("speaks: ").unwrap_or_default(),
+        }
+    }
+}
+
+impl Part {
+    fn parse(block: &'static str) -> Self {
+        let block = block.trim_end();
+        if let Some((heading, lines)) = block.strip_prefix("## ").and_then(|it| it.split_once('\n'))
+        {
+            let terms = lines
+                .lines()
+                .map(|line| line.strip_prefix("- ")?.split_once(" — "));
+            if let Some(terms) = terms.collect() {
+                return Self::Terms(heading, terms);
+            }
+            let code = lines.lines();
+            let code = code.map(|line| line.strip_prefix("    ").unwrap_or(line));
+            return Self::Code(heading, code.collect());
+        }
+        let examples = block.lines().map(|line| line.strip_prefix("$ "));
+        match examples.collect::<Option<Vec<_>>>() {
+            Some(lines) => {
+                let lines = lines.into_iter();
+                let lines = lines.map(|line| line.split_once(" # ").unwrap_or((line, "")));
+                Self::Examples(lines.collect())
+            }
+            None => Self::Text(block),
+        }
+    }
 }
 
 /// The heading of the options that every command has.

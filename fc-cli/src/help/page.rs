@@ -13,18 +13,6 @@ use crate::print;
 #[derive(Debug, clap::Args)]
 pub struct Options {}
 
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "以 Markdown 输出本程序的帮助",
-            "Print this program's help as Markdown",
-        ),
-        details: Vec::new(),
-        fails: "",
-        speaks: both("全部", "all of it"),
-    }
-}
-
 pub fn run() -> Result<Status, Failure> {
     print::result(&page())?;
     Ok(Status::Fine)
@@ -189,7 +177,7 @@ fn details(part: &Part) -> String {
             }
             titled(title, list)
         }
-        Part::Code(title, lines) => titled(title, format!("```yaml\n{lines}\n```\n")),
+        Part::Code(title, lines) => titled(title, format!("```yaml\n{}\n```\n", lines.join("\n"))),
         Part::Examples(rows) => {
             let mut lines = String::new();
             for (command, text) in rows {

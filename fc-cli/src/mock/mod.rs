@@ -17,7 +17,6 @@ use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::scenario::{Scenario, Verdict};
 
 use crate::endpoint::{self, Ports};
-use crate::help::{Help, Part};
 use crate::input;
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
@@ -96,65 +95,6 @@ enum Side {
     Robot,
     #[value(help = both("app，连接 `--to` 的机器人", "The app, which connects to the robot of `--to`"))]
     App,
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "按规范模拟机器人或 app",
-            "Play a robot or an app from the spec",
-        ),
-        details: vec![
-            Part::Text(both(
-                "模拟端用规范中的示例响应指令，以协议的结果码拒绝不合规范的请求，以及前提不满足的指令。指令引起的过程从起始状态走到最后，\
-                 每步发送上报；设置过的值可以查到。没有应答的上报按规范重发。标准输出的第一行是两个端口的地址。Ctrl-C 结束。",
-                "The mock responds to commands with the examples of the spec. It refuses requests that break the spec, and commands whose \
-                 preconditions are not met, with the results of the protocol. A process that a command sets off runs from its first state to \
-                 its last, with a report for each. Values that were set can be read. Reports without an acknowledgement are repeated as the \
-                 spec demands. The first line on standard output has the addresses of both ports. Ctrl-C ends the mock.",
-            )),
-            Part::Text(both(
-                "`--as app` 模拟 app：连接机器人的两个端口，应答上报，按 `--pace` 的间隔逐条发送 `--allow` 允许的指令；有场景时发送\
-                 场景期望的指令，并按其规则检查响应。",
-                "`--as app` plays the app. It connects to both ports of a robot, acknowledges reports, and sends each command that \
-                 `--allow` allows, one after each `--pace`. With a scenario, it sends the commands that the scenario expects, and checks \
-                 the responses by its rules.",
-            )),
-            Part::Terms(
-                both("其他退出码", "Other exit statuses"),
-                vec![(
-                    "4",
-                    both(
-                        "`--as app` 无法连接机器人",
-                        "`--as app` cannot connect to the robot",
-                    ),
-                )],
-            ),
-            Part::Examples(vec![
-                (
-                    "fcproto mock",
-                    both("在规范的端口上", "On the ports of the spec"),
-                ),
-                (
-                    "fcproto mock --command-port 0 --data-port 0",
-                    both("在任意空闲端口上", "On any free ports"),
-                ),
-                (
-                    "fcproto mock --count 1000",
-                    both("一千台机器人", "A thousand robots"),
-                ),
-                (
-                    "fcproto mock --as app --to robot.local --expect",
-                    both("检查一台机器人的全部查询", "Check all queries of a robot"),
-                ),
-            ]),
-        ],
-        fails: both(
-            "规范或场景有错误，或对方不符合场景",
-            "Errors in the spec or the scenario, or another side that does not meet it",
-        ),
-        speaks: "",
-    }
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {

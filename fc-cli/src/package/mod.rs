@@ -22,7 +22,6 @@ use fc_codegen::version::{Ecosystem, Edition};
 use fc_spec::model::Model;
 
 use crate::generate;
-use crate::help::{Help, Part};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -90,70 +89,6 @@ impl Language {
             Self::Kotlin => kotlin::pack,
             Self::Cpp => cpp::pack,
         }
-    }
-}
-
-pub fn help() -> Help {
-    Help {
-        summary: both(
-            "打包各语言的包，供其他项目安装",
-            "Build packages that other projects install",
-        ),
-        details: vec![
-            Part::Terms(
-                both("各语言需要的工具", "Tools of each language"),
-                vec![
-                    ("rust", both("cargo、tar", "cargo, tar")),
-                    ("typescript", both("npm、tar", "npm, tar")),
-                    (
-                        "python",
-                        both(
-                            "python3 的 `build` 模块、tar",
-                            "python3 with the module `build`, tar",
-                        ),
-                    ),
-                    (
-                        "kotlin",
-                        both(
-                            "JDK 17 或更新；Kotlin 编译器来自 npm，或由 `KOTLIN` 指定",
-                            "JDK 17 or newer; the Kotlin compiler from npm or the directory `KOTLIN`",
-                        ),
-                    ),
-                    ("cpp", both("cmake、C++ 编译器", "cmake, a C++ compiler")),
-                ],
-            ),
-            Part::Text(both(
-                "每种语言写到 DIR 下同名的目录。`DIR/SHA256SUMS` 列出所有文件；再次打包只替换其中列出的文件。一种语言失败时，其余语言照常打包。",
-                "Each language gets a directory with its name below DIR. `DIR/SHA256SUMS` lists all files. The next run replaces \
-                 only files that are listed there. If one language fails, the others are still packed.",
-            )),
-            Part::Text(both(
-                "每个目录的 `sbom.cdx.json` 是物料清单（CycloneDX 1.6）：包、各自的版本和许可证，以及直接依赖。",
-                "`sbom.cdx.json` in each directory is the bill of materials (CycloneDX 1.6): the packages with versions and \
-                 licences, and their direct dependencies.",
-            )),
-            Part::Text(both(
-                "包的编号来自 `Cargo.toml`、`package.json`、`pyproject.toml`、`gradle.properties` 或 `CMakeLists.txt`。版本再加上规范的发布号：`0.2.0+2024.9`。\
-                 规范与每次发布都不同时，版本是带摘要的预发布版：`0.2.0-dev.x1a2b3c4d5e6f`。Python、Maven 和 Debian 按各自的规则写。",
-                "The number of a package is in its `Cargo.toml`, `package.json`, `pyproject.toml`, `gradle.properties` or \
-                 `CMakeLists.txt`. The version adds the release of the spec: `0.2.0+2024.9`. If the spec differs from every \
-                 release, the version is a pre-release with a fingerprint: `0.2.0-dev.x1a2b3c4d5e6f`. Python, Maven and Debian \
-                 write it by their own rules.",
-            )),
-            Part::Examples(vec![
-                ("fcproto package --out dist", ""),
-                ("fcproto package --out dist typescript python", ""),
-                (
-                    "cd dist && sha256sum --check SHA256SUMS",
-                    both("校验全部文件", "Verify all files"),
-                ),
-            ]),
-        ],
-        fails: both(
-            "规范有错误，生成的文件过期，或有语言无法打包",
-            "Errors in the spec, stale files, or a language that cannot be packed",
-        ),
-        speaks: "",
     }
 }
 

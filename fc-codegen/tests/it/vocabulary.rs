@@ -24,8 +24,7 @@ const SOURCES: [&str; 7] = [
 const HOME: &str = "fc-spec/src/vocabulary";
 
 /// Words that mean something else as well, and what.
-const ALSO: [(&str, &str); 30] = [
-    ("behaviour", "a key of what `fcproto diff` prints as JSON"),
+const ALSO: [(&str, &str); 29] = [
     (
         "code",
         "a key of operations, and of what products say of them",
