@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::rule::rules;
-use super::search::{Search, of_field, of_operation};
+use super::search::{Search, TITLE, of_field};
 use crate::load::texts::has_chinese;
 use crate::model::Operation;
 use crate::text;
@@ -46,13 +46,13 @@ fn text_repeats_name(search: &mut Search<'_>) {
 }
 
 fn full_stop(search: &mut Search<'_>) {
-    for (item, is_short, text) in search.texts() {
+    for (item, part, text) in search.texts() {
         // A full stop inside the text means several sentences.
         let one = |text: &str, stop: char, inside: &str| {
             text.strip_suffix(stop)
                 .is_some_and(|rest| !rest.contains(inside) && !rest.ends_with('.'))
         };
-        if !is_short || text.en.contains('\n') {
+        if part != TITLE || text.en.contains('\n') {
             continue;
         }
         let (zh, en) = (one(&text.zh, '。', "。"), one(&text.en, '.', ". "));
@@ -72,36 +72,27 @@ fn prose(text: &str) -> impl Iterator<Item = &str> {
 }
 
 fn foreign_punctuation(search: &mut Search<'_>) {
-    for (item, is_short, text) in search.texts() {
-        let about = if is_short { "text" } else { "about" };
-        let in_chinese = prose(&text.zh).find_map(|part| {
-            let mut pairs = part.chars().zip(part.chars().skip(1));
+    for (item, part, text) in search.texts() {
+        let in_chinese = prose(&text.zh).find_map(|text| {
+            let mut pairs = text.chars().zip(text.chars().skip(1));
             pairs.find(|(before, sign)| {
                 is_han(*before) && matches!(sign, ',' | ';' | ':' | '?' | '!')
             })
         });
         if let Some((_, sign)) = in_chinese {
-            let finding = Finding::new(
-                search.rule,
-                item,
-                text!(
-                    "中文里汉字后面用了半角的 `{sign}`",
-                    "the Chinese text has `{sign}` after a Chinese character"
-                ),
+            let message = text!(
+                "中文里汉字后面用了半角的 `{sign}`",
+                "the Chinese text has `{sign}` after a Chinese character"
             );
-            search.add(finding.about(format!("zh {about}")));
+            search.add(Finding::new(search.rule, item, message).about(format!("zh {part}")));
         }
-        let in_english = prose(&text.en).find_map(|part| part.chars().find(|c| is_full_width(*c)));
+        let in_english = prose(&text.en).find_map(|text| text.chars().find(|c| is_full_width(*c)));
         if let Some(sign) = in_english {
-            let finding = Finding::new(
-                search.rule,
-                item,
-                text!(
-                    "英文里用了全角的 `{sign}`",
-                    "the English text has the full-width `{sign}`"
-                ),
+            let message = text!(
+                "英文里用了全角的 `{sign}`",
+                "the English text has the full-width `{sign}`"
             );
-            search.add(finding.about(format!("en {about}")));
+            search.add(Finding::new(search.rule, item, message).about(format!("en {part}")));
         }
     }
 }
@@ -126,7 +117,7 @@ fn quoted_names(text: &str) -> BTreeSet<&str> {
 }
 
 fn code_in_one_language(search: &mut Search<'_>) {
-    for (item, is_short, text) in search.texts() {
+    for (item, part, text) in search.texts() {
         let (zh, en) = (quoted_names(&text.zh), quoted_names(&text.en));
         let (name, missing) = match (zh.difference(&en).next(), en.difference(&zh).next()) {
             (Some(name), _) => (*name, ["Chinese", "中文", "英文"]),
@@ -134,32 +125,25 @@ fn code_in_one_language(search: &mut Search<'_>) {
             (None, None) => continue,
         };
         let [english, chinese, other] = missing;
-        let finding = Finding::new(
-            search.rule,
-            item,
-            text!(
-                "只有{chinese}提到了 `{name}`，{other}没有",
-                "only the {english} text names `{name}`"
-            ),
+        let message = text!(
+            "只有{chinese}提到了 `{name}`，{other}没有",
+            "only the {english} text names `{name}`"
         );
-        search.add(finding.about(if is_short { "text" } else { "about" }));
+        search.add(Finding::new(search.rule, item, message).about(part));
     }
 }
 
 fn no_replacement(search: &mut Search<'_>) {
-    for operation in search.operations() {
+    let lacks_replacement = |operation: &Operation| {
         let withdrawn = operation.deprecated.as_ref();
-        if withdrawn.is_some_and(|it| it.replaced_by.is_none()) {
-            search.report(
-                of_operation(operation),
-                text!(
-                    "`{name}` 的 `deprecated` 没有 `replaced_by`",
-                    "`deprecated` of `{name}` has no `replaced_by`",
-                    name = operation.name
-                ),
-            );
-        }
-    }
+        withdrawn.is_some_and(|it| it.replaced_by.is_none())
+    };
+    search.report_operations(lacks_replacement, |name| {
+        text!(
+            "`{name}` 的 `deprecated` 没有 `replaced_by`",
+            "`deprecated` of `{name}` has no `replaced_by`"
+        )
+    });
 }
 
 fn new_without_since(search: &mut Search<'_>) {
@@ -167,34 +151,27 @@ fn new_without_since(search: &mut Search<'_>) {
     if !search.operations().any(Operation::is_from_source) {
         return;
     }
-    for operation in search.operations() {
-        if !operation.is_from_source() && operation.since.is_none() {
-            search.report(
-                of_operation(operation),
-                text!(
-                    "`{name}` 不在源文档中，也没有 `since`",
-                    "`{name}` is not in the source document and has no `since`",
-                    name = operation.name
-                ),
-            );
-        }
-    }
+    search.report_operations(
+        |operation| !operation.is_from_source() && operation.since.is_none(),
+        |name| {
+            text!(
+                "`{name}` 不在源文档中，也没有 `since`",
+                "`{name}` is not in the source document and has no `since`"
+            )
+        },
+    );
 }
 
 fn paragraphs_differ(search: &mut Search<'_>) {
-    for (item, is_short, text) in search.texts() {
+    for (item, part, text) in search.texts() {
         let count = |text: &str| text.trim().split("\n\n").count();
         let (zh, en) = (count(&text.zh), count(&text.en));
         if zh != en {
-            let finding = Finding::new(
-                search.rule,
-                item,
-                text!(
-                    "中文有 {zh} 段，英文有 {en} 段",
-                    "the Chinese text has {zh} paragraphs, the English one {en}"
-                ),
+            let message = text!(
+                "中文有 {zh} 段，英文有 {en} 段",
+                "the Chinese text has {zh} paragraphs, the English one {en}"
             );
-            search.add(finding.about(if is_short { "text" } else { "about" }));
+            search.add(Finding::new(search.rule, item, message).about(part));
         }
     }
 }

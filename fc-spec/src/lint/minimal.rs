@@ -43,17 +43,12 @@ fn similar_keys(search: &mut Search<'_>) {
             let first = *seen.entry(folded(&field.wire)).or_insert(field);
             if first.wire != field.wire {
                 let (one, other) = (&first.wire, &field.wire);
-                search.add(
-                    Finding::new(
-                        search.rule,
-                        of_field(ty, field),
-                        text!(
-                            "`{other}` 与 `{one}` 仅大小写或 `_` 不同",
-                            "`{other}` differs from `{one}` only in case or `_`"
-                        ),
-                    )
-                    .with(of_field(ty, first), text!("另一个", "the other one")),
+                let message = text!(
+                    "`{other}` 与 `{one}` 仅大小写或 `_` 不同",
+                    "`{other}` differs from `{one}` only in case or `_`"
                 );
+                let finding = Finding::new(search.rule, of_field(ty, field), message);
+                search.add(finding.with(of_field(ty, first), text!("另一个", "the other one")));
             }
         }
     }

@@ -8,6 +8,11 @@ use crate::model::{
     EnumValue, Field, Group, Kind, Model, Operation, StructType, Text, TypeDef, TypeShape, Variant,
 };
 
+/// The part of a subject that a short text without paragraphs describes.
+pub(super) const TITLE: &str = "text";
+/// The part of a subject that a text with paragraphs describes.
+const ABOUT: &str = "about";
+
 /// The search of one rule in a model.
 pub(super) struct Search<'m> {
     /// The model to search.
@@ -24,6 +29,28 @@ impl<'m> Search<'m> {
     /// Adds a finding about a thing.
     pub fn report(&mut self, item: impl Into<DefId>, message: Text) {
         self.add(Finding::new(self.rule, item, message));
+    }
+
+    /// Adds a finding about each field that has a problem. The message gets the key of the field.
+    pub fn report_fields(
+        &mut self,
+        has_problem: impl Fn(&Field) -> bool,
+        message: impl Fn(&str) -> Text,
+    ) {
+        for (ty, field) in self.fields().filter(|(_, field)| has_problem(field)) {
+            self.report(of_field(ty, field), message(&field.wire));
+        }
+    }
+
+    /// Adds a finding about each operation that has a problem. The message gets the name of the operation.
+    pub fn report_operations(
+        &mut self,
+        has_problem: impl Fn(&Operation) -> bool,
+        message: impl Fn(&str) -> Text,
+    ) {
+        for operation in self.operations().filter(|it| has_problem(it)) {
+            self.report(of_operation(operation), message(&operation.name));
+        }
     }
 
     /// Adds a finding that the caller has built.
@@ -50,45 +77,43 @@ impl<'m> Search<'m> {
         self.model.operations.iter()
     }
 
-    /// Returns every documentation text with its subject.
-    ///
-    /// The flag is `true` for a short text: a title without paragraphs.
-    pub fn texts(&self) -> Vec<(Subject<'m>, bool, &'m Text)> {
+    /// Returns every documentation text with its subject and its part of it: [`TITLE`] or [`ABOUT`].
+    pub fn texts(&self) -> Vec<(Subject<'m>, &'static str, &'m Text)> {
         let mut texts = Vec::new();
         for group in &self.model.groups {
             let of = Subject::Group(group);
-            texts.push((of, true, &group.title));
-            texts.extend(group.about.iter().map(|about| (of, false, about)));
+            texts.push((of, TITLE, &group.title));
+            texts.extend(group.about.iter().map(|about| (of, ABOUT, about)));
         }
         for operation in &self.model.operations {
             let of = Subject::Operation(operation);
-            texts.push((of, true, &operation.title));
-            texts.extend(operation.about.iter().map(|about| (of, false, about)));
+            texts.push((of, TITLE, &operation.title));
+            texts.extend(operation.about.iter().map(|about| (of, ABOUT, about)));
         }
         for ty in &self.model.types {
             let of = Subject::Type(ty);
             if ty.body_of.is_none() {
-                texts.push((of, true, &ty.title));
+                texts.push((of, TITLE, &ty.title));
             }
-            texts.extend(ty.about.iter().map(|about| (of, false, about)));
+            texts.extend(ty.about.iter().map(|about| (of, ABOUT, about)));
             match &ty.shape {
                 TypeShape::Struct(shape) => {
                     for field in &shape.fields {
                         let of = Subject::Field(ty, field);
-                        texts.push((of, true, &field.text));
+                        texts.push((of, TITLE, &field.text));
                         let note = field.details().note.iter();
-                        texts.extend(note.map(|note| (of, false, note)));
+                        texts.extend(note.map(|note| (of, ABOUT, note)));
                     }
                 }
                 TypeShape::Enum(shape) => {
                     let of = |it| Subject::Value(ty, it);
                     let values = shape.values.iter();
-                    texts.extend(values.map(|it| (of(it), true, &it.text)));
+                    texts.extend(values.map(|it| (of(it), TITLE, &it.text)));
                 }
                 TypeShape::OneOf(choice) => {
                     let of = |it| Subject::Variant(ty, it);
                     let variants = choice.variants.iter();
-                    texts.extend(variants.map(|it| (of(it), true, &it.text)));
+                    texts.extend(variants.map(|it| (of(it), TITLE, &it.text)));
                 }
             }
         }

@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::rule::rules;
 use super::search::{Search, of_field, of_operation};
-use crate::model::{BodyState, Effect, Exchange, Field, Text, Type, TypeDef};
+use crate::model::{BodyState, Effect, Exchange, Field, Operation, Text, Type, TypeDef};
 use crate::names::snake;
 use crate::text;
 use std::collections::BTreeMap;
@@ -22,63 +22,49 @@ rules! { Standard
 }
 
 fn empty_answer(search: &mut Search<'_>) {
-    for operation in search.operations() {
+    let types = &search.model.types;
+    let is_empty = |operation: &Operation| {
         let Exchange::Command {
             effect: Effect::Read,
             messages,
             ..
         } = &operation.exchange
         else {
-            continue;
+            return false;
         };
-        let body = search.model.types.structure(&messages.response.ty);
         let state = messages.response.state;
-        if body.fields.is_empty() && !matches!(state, BodyState::Open | BodyState::Free) {
-            search.report(
-                of_operation(operation),
-                text!(
-                    "`{name}` 的影响是 `read`，响应却没有键",
-                    "`{name}` has the effect `read`, but its response has no keys",
-                    name = operation.name
-                ),
-            );
-        }
-    }
+        types.structure(&messages.response.ty).fields.is_empty()
+            && !matches!(state, BodyState::Open | BodyState::Free)
+    };
+    search.report_operations(is_empty, |name| {
+        text!(
+            "`{name}` 的影响是 `read`，响应却没有键",
+            "`{name}` has the effect `read`, but its response has no keys"
+        )
+    });
 }
 
 fn number_without_unit(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
-        if matches!(field.ty.item(), Type::Float(_)) && field.details().unit.is_none() {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 是小数，但没有单位",
-                    "`{key}` is a fraction without a unit",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+    let lacks_unit =
+        |field: &Field| matches!(field.ty.item(), Type::Float(_)) && field.details().unit.is_none();
+    search.report_fields(lacks_unit, |key| {
+        text!(
+            "`{key}` 是小数，但没有单位",
+            "`{key}` is a fraction without a unit"
+        )
+    });
 }
 
 fn id_without_entity(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
-        let is_id = matches!(
-            snake(&field.wire).rsplit('_').next(),
-            Some("id" | "ids" | "uuid")
-        );
+    let lacks_entity = |field: &Field| {
+        let name = snake(&field.wire);
+        let is_id = matches!(name.rsplit('_').next(), Some("id" | "ids" | "uuid"));
         let may_be_one = matches!(field.ty.item(), Type::Int(_) | Type::String);
-        if is_id && may_be_one && field.details().refers.is_none() {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 没有 `refers`",
-                    "`{key}` has no `refers`",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+        is_id && may_be_one && field.details().refers.is_none()
+    };
+    search.report_fields(lacks_entity, |key| {
+        text!("`{key}` 没有 `refers`", "`{key}` has no `refers`")
+    });
 }
 
 /// Returns one map per wire key with several different facts, from each fact to the first field that has it.
@@ -103,21 +89,14 @@ fn several(search: &mut Search<'_>, ways: Vec<(&str, (&TypeDef, &Field))>, what:
     };
     let [en, zh] = what;
     for (other, (ty, field)) in ways {
-        search.add(
-            Finding::new(
-                search.rule,
-                of_field(ty, field),
-                text!(
-                    "`{key}` 的{zh}在这里是 `{other}`，在别处是 `{first}`",
-                    "the {en} of `{key}` is `{other}` here and `{first}` elsewhere",
-                    key = field.wire
-                ),
-            )
-            .with(
-                of_field(first_type, first_field),
-                text!("这里是 `{first}`", "`{first}` here"),
-            ),
+        let message = text!(
+            "`{key}` 的{zh}在这里是 `{other}`，在别处是 `{first}`",
+            "the {en} of `{key}` is `{other}` here and `{first}` elsewhere",
+            key = field.wire
         );
+        let label = text!("这里是 `{first}`", "`{first}` here");
+        let finding = Finding::new(search.rule, of_field(ty, field), message);
+        search.add(finding.with(of_field(first_type, first_field), label));
     }
 }
 
@@ -144,28 +123,22 @@ fn one_key_two_types(search: &mut Search<'_>) {
 }
 
 fn negative_bool(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
+    let is_negative = |field: &Field| {
         let name = snake(&field.wire);
         let mut words = name
             .split('_')
             .filter(|word| !matches!(*word, "is" | "has"));
         let first = words.next().unwrap_or_default();
         let is_negative = matches!(first, "not" | "no" | "non" | "disable" | "disabled" | "un");
-        if field.ty == Type::Bool && is_negative && words.next().is_some() {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 是否定式的名称",
-                    "`{key}` is a negative name",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+        field.ty == Type::Bool && is_negative && words.next().is_some()
+    };
+    search.report_fields(is_negative, |key| {
+        text!("`{key}` 是否定式的名称", "`{key}` is a negative name")
+    });
 }
 
 fn list_in_singular(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
+    let is_singular = |field: &Field| {
         let name = snake(&field.wire);
         let last = name.rsplit('_').next().unwrap_or_default();
         let is_plural = last.ends_with('s')
@@ -173,48 +146,34 @@ fn list_in_singular(search: &mut Search<'_>) {
                 last,
                 "list" | "array" | "set" | "data" | "info" | "path" | "queue"
             );
-        if matches!(field.ty, Type::Array(_)) && !is_plural {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 是列表，却用单数命名",
-                    "`{key}` is a list with a singular name",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+        matches!(field.ty, Type::Array(_)) && !is_plural
+    };
+    search.report_fields(is_singular, |key| {
+        text!(
+            "`{key}` 是列表，却用单数命名",
+            "`{key}` is a list with a singular name"
+        )
+    });
 }
 
 fn report_without_cadence(search: &mut Search<'_>) {
-    for operation in search.operations() {
-        if matches!(operation.exchange, Exchange::Report { cadence: None, .. }) {
-            search.report(
-                of_operation(operation),
-                text!(
-                    "`{name}` 没有 `cadence`",
-                    "`{name}` has no `cadence`",
-                    name = operation.name
-                ),
-            );
-        }
-    }
+    search.report_operations(
+        |operation| matches!(operation.exchange, Exchange::Report { cadence: None, .. }),
+        |name| text!("`{name}` 没有 `cadence`", "`{name}` has no `cadence`"),
+    );
 }
 
 fn motion_without_process(search: &mut Search<'_>) {
-    for operation in search.operations() {
+    let lacks_process = |operation: &Operation| {
         let is_motion = operation.effect() == Some(Effect::Motion);
-        if is_motion && operation.accepted().is_none() && operation.sets_off().is_empty() {
-            search.report(
-                of_operation(operation),
-                text!(
-                    "`{name}` 没有 `accepted`，也没有 `sets_off`",
-                    "`{name}` has neither `accepted` nor `sets_off`",
-                    name = operation.name
-                ),
-            );
-        }
-    }
+        is_motion && operation.accepted().is_none() && operation.sets_off().is_empty()
+    };
+    search.report_operations(lacks_process, |name| {
+        text!(
+            "`{name}` 没有 `accepted`，也没有 `sets_off`",
+            "`{name}` has neither `accepted` nor `sets_off`"
+        )
+    });
 }
 
 fn code_of_other_group(search: &mut Search<'_>) {

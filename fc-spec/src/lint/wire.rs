@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::rule::rules;
 use super::search::{Search, of_field};
-use crate::model::{Direction, Exchange, IntKind, Type, TypeShape, WireForm};
+use crate::model::{Direction, Exchange, Field, IntKind, Type, TypeShape, WireForm};
 use crate::text;
 
 rules! { Wire
@@ -19,58 +19,43 @@ rules! { Wire
 const SAFE: f64 = 9_007_199_254_740_991.0;
 
 fn integer_beyond_double(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
+    let is_beyond = |field: &Field| {
         let is_long = matches!(field.ty.item(), Type::Int(IntKind::I64 | IntKind::U64));
         let max = field.details().constraints.max.as_ref();
         let is_bounded = max.is_some_and(|max| max.to_f64() <= SAFE);
-        if is_long && !is_bounded && field.wire_form != WireForm::String {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 以 JSON 数字发送，可能大于 2^53",
-                    "`{key}` is sent as a JSON number and may be larger than 2^53",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+        is_long && !is_bounded && field.wire_form != WireForm::String
+    };
+    search.report_fields(is_beyond, |key| {
+        text!(
+            "`{key}` 以 JSON 数字发送，可能大于 2^53",
+            "`{key}` is sent as a JSON number and may be larger than 2^53"
+        )
+    });
 }
 
 fn number_without_range(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
-        let details = field.details();
-        let is_open = details.constraints.min.is_none() && details.constraints.max.is_none();
-        if matches!(field.ty.item(), Type::Float(_)) && is_open {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 没有 `min` 也没有 `max`",
-                    "`{key}` has neither `min` nor `max`",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+    let lacks_range = |field: &Field| {
+        let constraints = &field.details().constraints;
+        let is_open = constraints.min.is_none() && constraints.max.is_none();
+        matches!(field.ty.item(), Type::Float(_)) && is_open
+    };
+    search.report_fields(lacks_range, |key| {
+        text!(
+            "`{key}` 没有 `min` 也没有 `max`",
+            "`{key}` has neither `min` nor `max`"
+        )
+    });
 }
 
 fn unbounded_length(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
+    let is_unbounded = |field: &Field| {
         let has_length = matches!(field.ty, Type::String | Type::Base64 | Type::Array(_));
-        let details = field.details();
-        if has_length
-            && details.constraints.length.is_none()
-            && details.constraints.pattern.is_none()
-        {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 没有 `length`",
-                    "`{key}` has no `length`",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+        let constraints = &field.details().constraints;
+        has_length && constraints.length.is_none() && constraints.pattern.is_none()
+    };
+    search.report_fields(is_unbounded, |key| {
+        text!("`{key}` 没有 `length`", "`{key}` has no `length`")
+    });
 }
 
 fn closed_enum_in_report(search: &mut Search<'_>) {
@@ -105,34 +90,21 @@ fn seconds_beside_milliseconds(search: &mut Search<'_>) {
     for (ty, shape) in search.structs() {
         let of = |wanted: &Type| shape.fields.iter().find(|field| field.ty.item() == wanted);
         if let (Some(seconds), Some(other)) = (of(&Type::TimestampS), of(&Type::TimestampMs)) {
-            search.add(
-                Finding::new(
-                    search.rule,
-                    of_field(ty, seconds),
-                    text!(
-                        "`{seconds_key}` 以秒计，`{other_key}` 以毫秒计",
-                        "`{seconds_key}` is in seconds, `{other_key}` in milliseconds",
-                        seconds_key = seconds.wire,
-                        other_key = other.wire
-                    ),
-                )
-                .with(of_field(ty, other), text!("以毫秒计", "in milliseconds")),
+            let message = text!(
+                "`{seconds_key}` 以秒计，`{other_key}` 以毫秒计",
+                "`{seconds_key}` is in seconds, `{other_key}` in milliseconds",
+                seconds_key = seconds.wire,
+                other_key = other.wire
             );
+            let finding = Finding::new(search.rule, of_field(ty, seconds), message);
+            search.add(finding.with(of_field(ty, other), text!("以毫秒计", "in milliseconds")));
         }
     }
 }
 
 fn untyped_value(search: &mut Search<'_>) {
-    for (ty, field) in search.fields() {
-        if *field.ty.item() == Type::Json {
-            search.report(
-                of_field(ty, field),
-                text!(
-                    "`{key}` 接受任意 JSON 值",
-                    "`{key}` accepts any JSON value",
-                    key = field.wire
-                ),
-            );
-        }
-    }
+    search.report_fields(
+        |field| *field.ty.item() == Type::Json,
+        |key| text!("`{key}` 接受任意 JSON 值", "`{key}` accepts any JSON value"),
+    );
 }

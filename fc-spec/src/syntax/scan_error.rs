@@ -124,7 +124,7 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             ))
         }
         _ => match scan_words::words(kind) {
-            Some((code, message, label, note)) => {
+            Some((code, [message, label, note])) => {
                 let odd = (code == FaultCode::BadIndentation)
                     .then(|| odd_line(place))
                     .flatten();
