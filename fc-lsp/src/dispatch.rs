@@ -8,7 +8,6 @@ use crate::{
 use gen_lsp_types as lsp;
 use lsp::Request as _;
 use lsp_server::{ErrorCode, Request, RequestId, Response, ResponseError};
-use serde_json::Value;
 
 /// Returns the capabilities of the server for the response to `initialize`.
 pub fn capabilities(encoding: crate::Encoding) -> lsp::ServerCapabilities {
@@ -86,96 +85,66 @@ pub fn refusal(id: RequestId, code: ErrorCode, message: &str) -> Response {
 
 /// Handles a request. Without a project there is no snapshot, and the result is empty.
 pub fn answer(request: Request, snapshot: Option<&Snapshot>) -> Response {
-    let Request { id, method, params } = request;
-    let ask = Ask {
-        id,
-        params,
+    let dispatch = Dispatch {
+        request,
         snapshot,
+        response: None,
     };
-    match method.as_str() {
-        m if m == lsp::CompletionRequest::METHOD.as_str() => {
-            ask.of::<lsp::CompletionRequest>(|snapshot, params| {
-                let at = params.text_document_position_params;
-                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
-                Some(completion(snapshot, offset).into())
-            })
-        }
-        m if m == lsp::HoverRequest::METHOD.as_str() => {
-            ask.of::<lsp::HoverRequest>(|snapshot, params| {
-                let at = params.text_document_position_params;
-                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
-                hover(snapshot, offset)
-            })
-        }
-        m if m == lsp::DefinitionRequest::METHOD.as_str() => {
-            ask.of::<lsp::DefinitionRequest>(|snapshot, params| {
-                let at = params.text_document_position_params;
-                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
-                let place = definition(snapshot, offset)?;
-                Some(lsp::Definition::from(place).into())
-            })
-        }
-        m if m == lsp::ReferencesRequest::METHOD.as_str() => {
-            ask.of::<lsp::ReferencesRequest>(|snapshot, params| {
-                let at = params.text_document_position_params;
-                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
-                references(snapshot, offset, params.context.include_declaration)
-            })
-        }
-        m if m == lsp::DocumentSymbolRequest::METHOD.as_str() => ask
-            .of::<lsp::DocumentSymbolRequest>(|snapshot, params| {
-                let file = snapshot.file(&params.text_document.uri)?;
-                Some(document_symbols(snapshot, file).into())
-            }),
-        m if m == lsp::WorkspaceSymbolRequest::METHOD.as_str() => ask
-            .of::<lsp::WorkspaceSymbolRequest>(|snapshot, params| {
-                Some(workspace_symbols(snapshot, &params.query).into())
-            }),
-        m if m == lsp::CodeActionRequest::METHOD.as_str() => {
-            ask.of::<lsp::CodeActionRequest>(|snapshot, params| {
-                let uri = &params.text_document.uri;
-                let only = params.context.only;
-                let wants = |kind| only.as_ref().is_none_or(|only| is_among(kind, only));
-                let mut found = Vec::new();
-                if wants(lsp::CodeActionKind::QuickFix) {
-                    found.extend(actions(snapshot, uri, params.range));
-                }
-                // Fix-all covers the whole file, so the client gets it only on request.
-                if only.is_some() && wants(lsp::CodeActionKind::SourceFixAll) {
-                    found.extend(fix_all(snapshot, uri));
-                }
-                Some(found.into_iter().map(Into::into).collect())
-            })
-        }
-        m if m == lsp::CodeLensRequest::METHOD.as_str() => {
-            ask.of::<lsp::CodeLensRequest>(|snapshot, params| {
-                Some(lenses(snapshot, snapshot.file(&params.text_document.uri)?))
-            })
-        }
-        m if m == lsp::DocumentFormattingRequest::METHOD.as_str() => ask
-            .of::<lsp::DocumentFormattingRequest>(
-            |snapshot, params| formatting(snapshot, &params.text_document.uri),
-        ),
-        m if m == lsp::PrepareRenameRequest::METHOD.as_str() => ask
-            .of::<lsp::PrepareRenameRequest>(|snapshot, params| {
-                let at = params.text_document_position_params;
-                let offset = snapshot.offset(&at.text_document.uri, at.position)?;
-                prepare_rename(snapshot, offset).map(Into::into)
-            }),
-        m if m == lsp::RenameRequest::METHOD.as_str() => {
-            ask.trying::<lsp::RenameRequest>(|snapshot, params| {
-                let at = params.text_document_position_params;
-                let Some(offset) = snapshot.offset(&at.text_document.uri, at.position) else {
-                    return Ok(None);
-                };
-                rename(snapshot, offset, &params.new_name).map(Some)
-            })
-        }
-        _ => {
-            let message = format!("`{method}` is not known here");
-            Response::new_err(ask.id, ErrorCode::MethodNotFound as i32, message)
-        }
-    }
+    dispatch
+        .on::<lsp::CompletionRequest>(|snapshot, params| {
+            let at = snapshot.position(&params.text_document_position_params)?;
+            Some(completion(snapshot, at).into())
+        })
+        .on::<lsp::HoverRequest>(|snapshot, params| {
+            let at = snapshot.position(&params.text_document_position_params)?;
+            hover(snapshot, at)
+        })
+        .on::<lsp::DefinitionRequest>(|snapshot, params| {
+            let at = snapshot.position(&params.text_document_position_params)?;
+            Some(lsp::Definition::from(definition(snapshot, at)?).into())
+        })
+        .on::<lsp::ReferencesRequest>(|snapshot, params| {
+            let at = snapshot.position(&params.text_document_position_params)?;
+            references(snapshot, at, params.context.include_declaration)
+        })
+        .on::<lsp::DocumentSymbolRequest>(|snapshot, params| {
+            let file = snapshot.file(&params.text_document.uri)?;
+            Some(document_symbols(snapshot, file).into())
+        })
+        .on::<lsp::WorkspaceSymbolRequest>(|snapshot, params| {
+            Some(workspace_symbols(snapshot, &params.query).into())
+        })
+        .on::<lsp::CodeActionRequest>(|snapshot, params| {
+            let uri = &params.text_document.uri;
+            let only = params.context.only;
+            let wants = |kind| only.as_ref().is_none_or(|only| is_among(kind, only));
+            let mut found = Vec::new();
+            if wants(lsp::CodeActionKind::QuickFix) {
+                found.extend(actions(snapshot, uri, params.range));
+            }
+            // Fix-all covers the whole file, so the client gets it only on request.
+            if only.is_some() && wants(lsp::CodeActionKind::SourceFixAll) {
+                found.extend(fix_all(snapshot, uri));
+            }
+            Some(found.into_iter().map(Into::into).collect())
+        })
+        .on::<lsp::CodeLensRequest>(|snapshot, params| {
+            let file = snapshot.file(&params.text_document.uri)?;
+            Some(lenses(snapshot, file))
+        })
+        .on::<lsp::DocumentFormattingRequest>(|snapshot, params| {
+            formatting(snapshot, &params.text_document.uri)
+        })
+        .on::<lsp::PrepareRenameRequest>(|snapshot, params| {
+            let at = snapshot.position(&params.text_document_position_params)?;
+            prepare_rename(snapshot, at).map(Into::into)
+        })
+        .on_fallible::<lsp::RenameRequest>(|snapshot, params| {
+            let at = snapshot.position(&params.text_document_position_params);
+            let edit = at.map(|at| rename(snapshot, at, &params.new_name));
+            edit.transpose()
+        })
+        .finish()
 }
 
 /// Returns `true` if a kind of action equals one of `asked`, or is below one: `source.fixAll` is below `source`.
@@ -188,38 +157,39 @@ fn is_among(kind: lsp::CodeActionKind, asked: &[lsp::CodeActionKind]) -> bool {
     })
 }
 
-/// A request, and the snapshot that answers it.
-struct Ask<'s> {
-    id: RequestId,
-    params: Value,
+/// A request on its way through the handlers. The handler of its method sets the response.
+struct Dispatch<'s> {
+    request: Request,
     snapshot: Option<&'s Snapshot>,
+    response: Option<Response>,
 }
 
-impl Ask<'_> {
-    fn of<R: lsp::Request>(self, answer: impl FnOnce(&Snapshot, R::Params) -> R::Result) -> Response
+impl Dispatch<'_> {
+    fn on<R: lsp::Request>(self, answer: impl FnOnce(&Snapshot, R::Params) -> R::Result) -> Self
     where
         R::Result: Default,
     {
-        self.trying::<R>(|snapshot, params| Ok(answer(snapshot, params)))
+        self.on_fallible::<R>(|snapshot, params| Ok(answer(snapshot, params)))
     }
 
-    /// Like [`Self::of`], for a handler that can fail with a sentence for the user.
-    fn trying<R: lsp::Request>(
-        self,
+    /// Like [`Self::on`], for a handler that can fail with a sentence for the user.
+    fn on_fallible<R: lsp::Request>(
+        mut self,
         answer: impl FnOnce(&Snapshot, R::Params) -> Result<R::Result, String>,
-    ) -> Response
+    ) -> Self
     where
         R::Result: Default,
     {
+        if self.request.method != R::METHOD.as_str() {
+            return self;
+        }
         let fails = |code: ErrorCode, message| ResponseError {
             code: code as i32,
             message,
             data: None,
         };
-        let result = match (
-            serde_json::from_value::<R::Params>(self.params),
-            self.snapshot,
-        ) {
+        let params = std::mem::take(&mut self.request.params);
+        let result = match (serde_json::from_value::<R::Params>(params), self.snapshot) {
             (Err(error), _) => Err(fails(ErrorCode::InvalidParams, error.to_string())),
             (Ok(_), None) => Ok(R::Result::default()),
             (Ok(params), Some(snapshot)) => {
@@ -230,9 +200,18 @@ impl Ask<'_> {
             serde_json::to_value(result)
                 .map_err(|error| fails(ErrorCode::InternalError, error.to_string()))
         });
-        Response {
-            id: self.id,
+        self.response = Some(Response {
+            id: self.request.id.clone(),
             response_result,
-        }
+        });
+        self
+    }
+
+    fn finish(self) -> Response {
+        let Request { id, method, .. } = self.request;
+        self.response.unwrap_or_else(|| {
+            let message = format!("`{method}` is not known here");
+            refusal(id, ErrorCode::MethodNotFound, &message)
+        })
     }
 }

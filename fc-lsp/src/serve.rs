@@ -13,7 +13,7 @@ use crate::workspace::Workspace;
 use gen_lsp_types as lsp;
 use lsp::Notification as _;
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
-use serde::de::DeserializeOwned;
+use serde::Deserialize as _;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::Path;
@@ -32,11 +32,7 @@ pub struct ServeError(String);
 
 impl fmt::Display for ServeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "the client does not speak as a client should: {}",
-            self.0
-        )
+        write!(f, "the client breaks the protocol: {}", self.0)
     }
 }
 
@@ -150,7 +146,7 @@ impl Server<'_> {
                 }
                 Event::Message(Message::Request(request)) => self.request(request),
                 Event::Message(Message::Notification(notification)) => {
-                    if self.notification(notification) == Next::Exit {
+                    if self.notification(&notification) == Next::Exit {
                         return Next::Exit;
                     }
                 }
@@ -210,38 +206,25 @@ impl Server<'_> {
         }
     }
 
-    fn notification(&mut self, notification: Notification) -> Next {
-        let Notification { method, params } = notification;
-        match method.as_str() {
-            m if m == lsp::ExitNotification::METHOD.as_str() => return Next::Exit,
-            m if m == lsp::InitializedNotification::METHOD.as_str() => self.begin(),
-            m if m == lsp::DidOpenTextDocumentNotification::METHOD.as_str() => {
-                if let Some(params) = read::<lsp::DidOpenTextDocumentParams>(params) {
-                    self.open(params.text_document);
-                }
-            }
-            m if m == lsp::DidChangeTextDocumentNotification::METHOD.as_str() => {
-                if let Some(params) = read::<lsp::DidChangeTextDocumentParams>(params) {
-                    let document = params.text_document;
-                    let uri = document.text_document_identifier.uri;
-                    let changes = params.content_changes;
-                    self.with(uri, |workspace, uri| {
-                        workspace.change(uri, document.version, changes)
-                    });
-                }
-            }
-            m if m == lsp::DidCloseTextDocumentNotification::METHOD.as_str() => {
-                if let Some(params) = read::<lsp::DidCloseTextDocumentParams>(params) {
-                    self.with(params.text_document.uri, Workspace::close);
-                }
-            }
-            m if m == lsp::DidChangeWatchedFilesNotification::METHOD.as_str() => {
-                if let Some(params) = read::<lsp::DidChangeWatchedFilesParams>(params) {
-                    self.files_changed(&params.changes);
-                }
-            }
-            // Other notifications need no action.
-            _ => {}
+    /// Handles a notification. Ignores one with an unknown method.
+    fn notification(&mut self, notification: &Notification) -> Next {
+        if let Some(params) = read::<lsp::DidOpenTextDocumentNotification>(notification) {
+            self.open(params.text_document);
+        } else if let Some(params) = read::<lsp::DidChangeTextDocumentNotification>(notification) {
+            let document = params.text_document;
+            let uri = document.text_document_identifier.uri;
+            let changes = params.content_changes;
+            self.with(uri, |workspace, uri| {
+                workspace.change(uri, document.version, changes)
+            });
+        } else if let Some(params) = read::<lsp::DidCloseTextDocumentNotification>(notification) {
+            self.with(params.text_document.uri, Workspace::close);
+        } else if let Some(params) = read::<lsp::DidChangeWatchedFilesNotification>(notification) {
+            self.files_changed(&params.changes);
+        } else if notification.method == lsp::InitializedNotification::METHOD.as_str() {
+            self.begin();
+        } else if notification.method == lsp::ExitNotification::METHOD.as_str() {
+            return Next::Exit;
         }
         Next::GoOn
     }
@@ -405,9 +388,11 @@ impl Server<'_> {
     }
 }
 
-/// Returns the parameters of a notification, or `None` if they are invalid. A notification has no error response.
-fn read<P: DeserializeOwned>(params: serde_json::Value) -> Option<P> {
-    serde_json::from_value(params).ok()
+/// Returns the parameters of a notification `N`. Returns `None` for another one, or if the parameters are invalid: a
+/// notification has no error response.
+fn read<N: lsp::Notification>(notification: &Notification) -> Option<N::Params> {
+    let is_one = notification.method == N::METHOD.as_str();
+    is_one.then(|| N::Params::deserialize(&notification.params).ok())?
 }
 
 /// Returns the request that a message cancels.

@@ -13,7 +13,7 @@ use fc_spec::model::{Group, Model, Operation, RangeUse, Text, Types};
 use fc_spec::source::{FileId, SourceFile, Sources, Span};
 use gen_lsp_types::{
     Location, OptionalVersionedTextDocumentIdentifier, Position, Range, TextDocumentEdit,
-    TextDocumentIdentifier, TextEdit, Uri, WorkspaceEdit,
+    TextDocumentIdentifier, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit,
 };
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -270,7 +270,13 @@ impl Snapshot {
         })
     }
 
-    /// Returns the file and byte offset of a position.
+    /// Returns the file and byte offset of the position that a request names.
+    #[must_use]
+    pub fn position(&self, at: &TextDocumentPositionParams) -> Option<(FileId, usize)> {
+        self.offset(&at.text_document.uri, at.position)
+    }
+
+    /// Returns the file with a URI and the byte offset of a position in it.
     #[must_use]
     pub fn offset(&self, uri: &Uri, position: Position) -> Option<(FileId, usize)> {
         let file = self.file(uri)?;
