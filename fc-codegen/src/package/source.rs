@@ -239,7 +239,12 @@ pub fn join<S: AsRef<str>>(items: &[S]) -> String {
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use crate::package::template::Templates;
     use std::borrow::Cow;
+    use std::collections::HashMap;
+    use std::sync::LazyLock;
+
+    static TEMPLATES: Templates = LazyLock::new(HashMap::new);
 
     /// A style with the comments of Java.
     pub static BRACES: Style = Style {
@@ -258,7 +263,7 @@ pub mod tests {
         link: str::to_owned,
         integer: |value| value.to_string(),
         redacted: "",
-        templates: "",
+        templates: &TEMPLATES,
     };
 
     /// A style with the comments of Python.

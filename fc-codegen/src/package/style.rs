@@ -1,5 +1,6 @@
 //! The source style of a language: line width, indentation, comments and a few fixed phrases.
 
+use super::template::Templates;
 use std::borrow::Cow;
 
 /// The source style of a language.
@@ -17,8 +18,9 @@ pub struct Style {
     pub integer: fn(i128) -> String,
     /// The phrase for a value that is not printed.
     pub redacted: &'static str,
-    /// The source text that does not depend on the spec: see [`Source::template`](super::source::Source::template).
-    pub templates: &'static str,
+    /// The source text that does not depend on the spec, by name: see
+    /// [`Source::template`](super::source::Source::template).
+    pub templates: &'static Templates,
 }
 
 /// A documentation comment.

@@ -3,6 +3,8 @@
 use super::docs::Docs;
 use super::source::Source;
 use fc_spec::model::Lang;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
 /// The mark of a comment's line in Chinese.
 const ZH: &str = "zh: ";
@@ -13,10 +15,19 @@ const EN: &str = "en: ";
 /// The mark of a comment's line that does not depend on the language.
 const ANY: &str = "doc: ";
 
+/// Templates by their names, read on first use.
+pub type Templates = LazyLock<HashMap<&'static str, &'static str>>;
+
+/// Returns the templates of a file. Each is below a line with its name: `---- name`.
+pub fn templates(text: &'static str) -> HashMap<&'static str, &'static str> {
+    let all = text.split("---- ").filter_map(|it| it.split_once('\n'));
+    all.map(|(name, text)| (name, text.trim_end())).collect()
+}
+
 impl Source {
     /// Writes a template of the language, and replaces `{{name}}` by its value.
     ///
-    /// A template is below a line with its name: `---- name`. A comment has the lines above an item that begin with
+    /// A comment has the lines above an item that begin with
     /// `zh: `, `en: ` or `doc: `. A line with both `zh: ` and `en: ` is one sentence in each language. A line that
     /// consists of an empty value is left out. A comment before an empty line is on the enclosing item, and one at the
     /// end is on the item that follows.
@@ -30,9 +41,8 @@ impl Source {
     }
 
     fn written_template(&mut self, name: &str, values: &[(&str, &str)], end: &str) {
-        let mut all = self.style().templates.split("---- ");
-        let template = all.find_map(|it| it.strip_prefix(name)?.strip_prefix('\n'));
-        let mut text = template.unwrap_or_default().trim_end().to_owned();
+        let template = self.style().templates.get(name);
+        let mut text = template.copied().unwrap_or_default().to_owned();
         for (name, value) in values {
             let mark = ["{{", name, "}}"].concat();
             if value.is_empty() {
@@ -57,8 +67,10 @@ impl Source {
                 }
                 comment.push(content);
             } else if content.is_empty() {
-                self.inner_docs(&docs_of(&comment));
-                comment.clear();
+                if !comment.is_empty() {
+                    self.inner_docs(&docs_of(&comment));
+                    comment.clear();
+                }
                 self.blank();
             } else {
                 self.indented_docs(columns, &comment);
@@ -69,7 +81,11 @@ impl Source {
         self.indented_docs(columns, &comment);
     }
 
+    /// Writes a comment in front of an item that is indented by this number of columns. Most items have none.
     fn indented_docs(&mut self, columns: usize, lines: &[&str]) {
+        if lines.is_empty() {
+            return;
+        }
         let levels = columns / self.style().indent.len();
         self.deeper(levels, |out| out.docs(&docs_of(lines)));
     }
@@ -109,10 +125,18 @@ mod tests {
     use crate::package::source::Source;
     use crate::package::source::tests::BRACES;
     use crate::package::style::Style;
+    use crate::package::template::{Templates, templates};
     use fc_spec::model::{Lang, Languages};
+    use std::sync::LazyLock;
 
     static STYLE: Style = Style {
-        templates: "\
+        templates: &TEMPLATES,
+        ..BRACES
+    };
+
+    static TEMPLATES: Templates = LazyLock::new(|| {
+        templates(
+            "\
 ---- classes
 zh: 一。 en: One.
 class {{name}}
@@ -130,8 +154,8 @@ class Two {
 
 ---- other
 ",
-        ..BRACES
-    };
+        )
+    });
 
     fn written(languages: Languages) -> String {
         let mut out = Source::new(&STYLE, languages);

@@ -5,9 +5,13 @@ use crate::package::context::Context;
 use crate::package::docs::columns_of;
 use crate::package::source::{Source, join};
 use crate::package::style::{Comment, Style};
+use crate::package::template::{Templates, templates};
 use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::sync::LazyLock;
+
+static TEMPLATES: Templates = LazyLock::new(|| templates(include_str!("templates.cpp.in")));
 
 /// The style of clang-format.
 pub static CPP: Style = Style {
@@ -26,7 +30,7 @@ pub static CPP: Style = Style {
     link: |name| format!("`{name}`"),
     integer: |value| value.to_string(),
     redacted: "Never printed.",
-    templates: include_str!("templates.cpp.in"),
+    templates: &TEMPLATES,
 };
 
 /// Replaces backslashes that could end a line of a comment after wrapping.

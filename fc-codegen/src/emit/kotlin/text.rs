@@ -6,11 +6,15 @@ use crate::package::docs::escape_links;
 use crate::package::language::Case;
 use crate::package::marks::FieldMarks;
 use crate::package::style::{Comment, Style};
+use crate::package::template::{Templates, templates};
 use fc_spec::model::{
     Argument, Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable, is_hidden,
 };
 use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::sync::LazyLock;
+
+static TEMPLATES: Templates = LazyLock::new(|| templates(include_str!("templates.kt.in")));
 
 /// The style of ktlint.
 pub static STYLE: Style = Style {
@@ -29,7 +33,7 @@ pub static STYLE: Style = Style {
     link: |name| format!("[{name}]"),
     integer: grouped,
     redacted: "Never shown by `toString`.",
-    templates: include_str!("templates.kt.in"),
+    templates: &TEMPLATES,
 };
 
 fn prose(line: &str) -> Cow<'_, str> {

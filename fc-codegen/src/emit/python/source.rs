@@ -4,9 +4,13 @@ use super::literal::literal;
 use crate::package::docs::Docs;
 use crate::package::source::{Source, join};
 use crate::package::style::{Comment, Style};
+use crate::package::template::{Templates, templates};
 use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+static TEMPLATES: Templates = LazyLock::new(|| templates(include_str!("templates.py.in")));
 
 /// The style of the package's formatter.
 pub static PYTHON: Style = Style {
@@ -25,7 +29,7 @@ pub static PYTHON: Style = Style {
     link: |name| format!("`{name}`"),
     integer: crate::package::digits::grouped,
     redacted: "Never shown by `repr()`.",
-    templates: include_str!("templates.py.in"),
+    templates: &TEMPLATES,
 };
 
 /// The columns of a docstring's first line that its quotes take.

@@ -3,9 +3,13 @@
 use crate::package::docs::{columns_of, escape_links};
 use crate::package::source::join;
 use crate::package::style::{Comment, Style};
+use crate::package::template::{Templates, templates};
 use std::borrow::Cow;
+use std::sync::LazyLock;
 
 pub use crate::package::source::Source;
+
+static TEMPLATES: Templates = LazyLock::new(|| templates(include_str!("templates.rs.in")));
 
 /// The style of rustfmt.
 pub static RUST: Style = Style {
@@ -28,7 +32,7 @@ pub static RUST: Style = Style {
     link: |name| format!("[`{name}`]"),
     integer: crate::package::digits::grouped,
     redacted: "Never shown by `Debug`.",
-    templates: include_str!("templates.rs.in"),
+    templates: &TEMPLATES,
 };
 
 /// The maximum width of several attribute arguments on one line, as in rustfmt.

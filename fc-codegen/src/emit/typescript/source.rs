@@ -4,11 +4,15 @@ use super::context::Context;
 use crate::package::docs::{Docs, escape_links};
 use crate::package::source::join;
 use crate::package::style::{Comment, Style};
+use crate::package::template::{Templates, templates};
 use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::sync::LazyLock;
 
 pub use crate::package::source::Source;
+
+static TEMPLATES: Templates = LazyLock::new(|| templates(include_str!("templates.ts.in")));
 
 /// The style of the package.
 pub static TYPESCRIPT: Style = Style {
@@ -27,7 +31,7 @@ pub static TYPESCRIPT: Style = Style {
     link: |name| format!("{{@link {name}}}"),
     integer: |value| value.to_string(),
     redacted: "Left out by `redacted`.",
-    templates: include_str!("templates.ts.in"),
+    templates: &TEMPLATES,
 };
 
 /// Escapes prose that could end the comment, or read as a link or a tag.
