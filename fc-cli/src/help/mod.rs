@@ -36,7 +36,7 @@ pub enum Part {
     /// A heading, and terms with their meanings.
     Terms(&'static str, Vec<(&'static str, &'static str)>),
     /// A heading, and lines that are shown unchanged.
-    Code(&'static str, Vec<&'static str>),
+    Code(&'static str, &'static str),
     /// Command lines with their purpose.
     Examples(Vec<(&'static str, &'static str)>),
 }
@@ -70,48 +70,57 @@ fn of(path: &[&str]) -> Option<Help> {
 }
 
 impl Help {
-    /// Reads a text: a line with the summary, lines with `fails: ` and `speaks: `, and blocks with the details.
-    ///
-    /// A block is a paragraph, examples that begin with `$ `, or a heading `## ` above terms `- term — meaning` or above
-    /// indented code. The purpose of an example follows ` # `.
+    /// Reads a text. Its blocks are the summary, `fails: ` and `speaks: ` if the command has them, and the details.
     fn parse(text: &'static str) -> Self {
-        let (head, details) = text.split_once("\n\n").unwrap_or((text, ""));
-        let said = |key: &str| head.lines().find_map(|line| line.strip_prefix(key));
-        let blocks = details.split("\n\n").filter(|it| !it.is_empty());
-        Self {
-            summary: head.lines().next().unwrap_or_default(),
-            details: blocks.map(Part::parse).collect(),
-            fails: said("fails: ").unwrap_or_default(),
-            speaks: said("speaks: ").unwrap_or_default(),
+        let mut blocks = text.trim_end().split("\n\n");
+        let mut help = Self {
+            summary: blocks.next().unwrap_or_default(),
+            details: Vec::new(),
+            fails: "",
+            speaks: "",
+        };
+        for block in blocks {
+            if let Some(cases) = block.strip_prefix("fails: ") {
+                help.fails = cases;
+            } else if let Some(output) = block.strip_prefix("speaks: ") {
+                help.speaks = output;
+            } else {
+                help.details.push(Part::parse(block));
+            }
         }
+        help
     }
 }
 
 impl Part {
+    /// Reads a block: a heading above terms or code, examples, or a paragraph. The purpose of an example follows ` # `.
     fn parse(block: &'static str) -> Self {
-        let block = block.trim_end();
-        if let Some((heading, lines)) = block.strip_prefix("## ").and_then(|it| it.split_once('\n'))
+        if let Some((heading, content)) =
+            block.strip_prefix("## ").and_then(|it| it.split_once('\n'))
         {
-            let terms = lines
+            let terms = content
                 .lines()
-                .map(|line| line.strip_prefix("- ")?.split_once(" — "));
-            if let Some(terms) = terms.collect() {
-                return Self::Terms(heading, terms);
-            }
-            let code = lines.lines();
-            let code = code.map(|line| line.strip_prefix("    ").unwrap_or(line));
-            return Self::Code(heading, code.collect());
+                .filter_map(|line| line.strip_prefix("- ")?.split_once(" — "));
+            return match fenced(content, "yaml") {
+                Some(lines) => Self::Code(heading, lines),
+                None => Self::Terms(heading, terms.collect()),
+            };
         }
-        let examples = block.lines().map(|line| line.strip_prefix("$ "));
-        match examples.collect::<Option<Vec<_>>>() {
+        match fenced(block, "sh") {
             Some(lines) => {
-                let lines = lines.into_iter();
+                let lines = lines.lines();
                 let lines = lines.map(|line| line.split_once(" # ").unwrap_or((line, "")));
                 Self::Examples(lines.collect())
             }
             None => Self::Text(block),
         }
     }
+}
+
+/// Returns the lines of a fenced block in a language.
+fn fenced<'t>(block: &'t str, language: &str) -> Option<&'t str> {
+    let lines = block.strip_prefix("```")?.strip_prefix(language)?;
+    lines.strip_prefix('\n')?.strip_suffix("\n```")
 }
 
 /// The heading of the options that every command has.

@@ -177,7 +177,7 @@ fn details(part: &Part) -> String {
             }
             titled(title, list)
         }
-        Part::Code(title, lines) => titled(title, format!("```yaml\n{}\n```\n", lines.join("\n"))),
+        Part::Code(title, lines) => titled(title, format!("```yaml\n{lines}\n```\n")),
         Part::Examples(rows) => {
             let mut lines = String::new();
             for (command, text) in rows {

@@ -127,7 +127,7 @@ fn shown(part: &Part, width: usize) -> String {
         Part::Text(text) => format!("\n{}\n", wrap(text, width).join("\n")),
         Part::Terms(title, rows) => section(title, &table(&owned(rows), width)),
         Part::Code(title, lines) => {
-            let lines = lines.iter().map(|line| format!("  {line}\n"));
+            let lines = lines.lines().map(|line| format!("  {line}\n"));
             section(title, &lines.collect::<String>())
         }
         Part::Examples(rows) => section(both("示例", "Examples"), &table(&owned(rows), width)),

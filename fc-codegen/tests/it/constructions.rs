@@ -35,7 +35,7 @@ enum Part {
 /// An area, the part of its files that counts, and its places from the root of the project.
 type Area = (&'static str, Part, &'static [&'static str]);
 
-const AREAS: [Area; 30] = [
+const AREAS: [Area; 31] = [
     (
         "documents",
         Part::Prose,
@@ -73,9 +73,17 @@ const AREAS: [Area; 30] = [
         ],
     ),
     ("templates", Part::Prose, &["fc-cli/templates"]),
-    ("explain", Part::Prose, &["fc-spec/src/diagnostic/explain"]),
+    (
+        "explain",
+        Part::Prose,
+        &[
+            "fc-spec/src/diagnostic/explain",
+            "fc-diff/src/rules/explain",
+        ],
+    ),
     ("messages", Part::Literals, &["fc-spec/src", "fc-diff/src"]),
     ("help", Part::Literals, &["fc-cli/src", "fc-lsp/src"]),
+    ("help of commands", Part::Prose, &["fc-cli/src/help/texts"]),
     (
         "test names",
         Part::TestNames,
