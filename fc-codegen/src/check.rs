@@ -3,7 +3,7 @@
 use crate::package::items::clashes;
 use crate::package::language::Language;
 use fc_spec::diagnostic::Faults;
-use fc_spec::index::definitions;
+use fc_spec::index::Index;
 use fc_spec::load::{Partial, Trees};
 use fc_spec::model::{Languages, Model};
 use fc_spec::source::Sources;
@@ -51,7 +51,7 @@ pub fn check_trees(trees: &Trees, requirements: &Requirements, faults: &mut Faul
         Err(_) => Vec::new(),
     };
     if !clashes.is_empty() {
-        let places = definitions(trees.sources());
+        let places = Index::new(trees.clone()).definitions();
         faults.extend(clashes.iter().filter_map(|clash| clash.fault(&places)));
     }
     let is_spellable = clashes.is_empty();
