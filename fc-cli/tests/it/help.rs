@@ -1,6 +1,7 @@
 //! Help and usage errors in both languages, and the page of the reference with the same texts.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -107,6 +108,19 @@ fn pages_have_the_same_structure() {
         page.lines().map(mark).collect::<Vec<_>>()
     };
     assert_eq!(shape("zh"), shape("en"));
+}
+
+#[test]
+fn every_text_is_listed() {
+    let help = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/help");
+    let source = fs::read_to_string(help.join("mod.rs")).expect("it is a text");
+    let files = fs::read_dir(help.join("texts")).expect("it is a directory");
+    for file in files {
+        let file = file.expect("it can be read").file_name();
+        let name = file.to_str().expect("it is ASCII");
+        let name = name.trim_end_matches(".md").trim_end_matches(".zh");
+        assert!(source.contains(&format!("\"{name}\"")), "{name}");
+    }
 }
 
 #[test]
