@@ -100,21 +100,19 @@ fn example<'p>(
     Some(Expressions::new(&context.package).record(&body.ty, &value))
 }
 
-/// All samples of a package, in the order of the file.
+/// All samples of a package, in the order of the file. Each is built when it is written.
 pub struct SampleRun<'p, 'm> {
-    /// The robot's responses.
-    pub answers: Vec<Sample<'p, 'm>>,
-    steps: Vec<SampleStep<'p, 'm>>,
+    context: &'p Context<'m>,
+    steps: Vec<SampleStep<'p>>,
 }
 
 /// A function that contains a sample.
-pub struct SampleStep<'p, 'm> {
+#[derive(Clone, Copy, Debug)]
+pub struct SampleStep<'p> {
     /// The action of the function.
     pub verb: Verb,
     /// The operation in the spec.
     pub operation: &'p Operation,
-    /// The sample.
-    pub sample: Sample<'p, 'm>,
 }
 
 /// The action of a step.
@@ -135,48 +133,54 @@ pub enum Verb {
 }
 
 impl<'p, 'm> SampleRun<'p, 'm> {
-    /// Builds the samples of a package, with example values.
+    /// Lists the samples of a package.
     pub fn build(context: &'p Context<'m>) -> Self {
         let mut steps = Vec::new();
-        let mut add = |verb, operation, sample: Option<Sample<'p, 'm>>| {
-            steps.extend(sample.map(|sample| SampleStep {
-                verb,
-                operation,
-                sample,
-            }));
-        };
-        let commands = context.commands();
-        for Call { operation, .. } in &commands {
-            add(Verb::Call, *operation, app(context, operation));
+        let mut add = |verb, operation| steps.push(SampleStep { verb, operation });
+        for Call { operation, .. } in context.commands() {
+            add(Verb::Call, operation);
         }
         for Call { operation, .. } in context.reports() {
-            add(Verb::Take, operation, app(context, operation));
-            add(Verb::Push, operation, robot(context, operation));
+            add(Verb::Take, operation);
+            add(Verb::Push, operation);
         }
         let streams = context.package.streams.iter().map(|stream| stream.of);
         for operation in streams.clone().filter(|it| it.sender == Side::Robot) {
-            add(Verb::Subscribe, operation, app(context, operation));
-            add(Verb::Stream, operation, robot(context, operation));
+            add(Verb::Subscribe, operation);
+            add(Verb::Stream, operation);
         }
         for operation in streams.filter(|it| it.sender == Side::App) {
-            add(Verb::Send, operation, app(context, operation));
+            add(Verb::Send, operation);
         }
-        let answers = commands.iter();
-        let answers = answers.filter_map(|it| robot(context, it.operation));
-        Self {
-            answers: answers.collect(),
-            steps,
-        }
+        Self { context, steps }
     }
 
-    /// Returns all steps.
-    pub fn steps(&self) -> &[SampleStep<'p, 'm>] {
-        &self.steps
+    /// Returns the robot's responses.
+    pub fn answers(&self) -> impl Iterator<Item = Sample<'p, 'm>> {
+        let commands = self.that(Verb::Call);
+        commands.filter_map(|step| robot(self.context, step.operation))
+    }
+
+    /// Returns all steps with their samples.
+    pub fn samples(&self) -> impl Iterator<Item = (SampleStep<'p>, Sample<'p, 'm>)> {
+        let steps = self.steps.iter().copied();
+        steps.filter_map(|step| Some((step, self.sample(step)?)))
+    }
+
+    /// Returns the sample of a step.
+    pub fn sample(&self, step: SampleStep<'p>) -> Option<Sample<'p, 'm>> {
+        match step.verb {
+            Verb::Call | Verb::Take | Verb::Subscribe | Verb::Send => {
+                app(self.context, step.operation)
+            }
+            Verb::Push | Verb::Stream => robot(self.context, step.operation),
+        }
     }
 
     /// Returns the steps with this action.
-    pub fn that(&self, verb: Verb) -> impl Iterator<Item = &SampleStep<'p, 'm>> {
-        self.steps.iter().filter(move |step| step.verb == verb)
+    pub fn that(&self, verb: Verb) -> impl Iterator<Item = SampleStep<'p>> {
+        let steps = self.steps.iter().copied();
+        steps.filter(move |step| step.verb == verb)
     }
 
     /// Returns `true` if any step has this action.
@@ -190,9 +194,9 @@ impl<'p, 'm> SampleRun<'p, 'm> {
     }
 }
 
-impl SampleStep<'_, '_> {
+impl SampleStep<'_> {
     /// Returns the name of the function in words: `call_get_station`.
-    pub fn name(&self) -> String {
+    pub fn name(self) -> String {
         let verb = match self.verb {
             Verb::Call => "call",
             Verb::Take => "take",
@@ -204,7 +208,7 @@ impl SampleStep<'_, '_> {
     }
 
     /// Returns the name and the type of the parameter, which is a stub.
-    pub fn parameter(&self) -> [&'static str; 2] {
+    pub fn parameter(self) -> [&'static str; 2] {
         match self.verb {
             Verb::Call | Verb::Take => ["client", "Client"],
             Verb::Push => ["reporter", "Reporter"],

@@ -231,15 +231,17 @@ pub fn samples_file(context: &Context<'_>) -> String {
     out.line(format!("class SampleRobot : public {space}::Robot {{"));
     out.line(" public:");
     out.enclose("", "};", |out| {
-        for answer in &run.answers {
+        for answer in run.answers() {
             out.blank();
-            writer.write(out, answer, &Meanwhile::default());
+            writer.write(out, &answer, &Meanwhile::default());
         }
     });
-    let mut function = |head: String, step: &SampleStep<'_, '_>, meanwhile: &Meanwhile<'_>| {
+    let mut function = |head: String, step: SampleStep<'_>, meanwhile: &Meanwhile<'_>| {
         out.blank();
         out.block(format!("bool {head}"), |out| {
-            writer.write(out, &step.sample, meanwhile);
+            if let Some(sample) = run.sample(step) {
+                writer.write(out, &sample, meanwhile);
+            }
             let end = match step.verb {
                 Verb::Call => "answer.has_value()",
                 Verb::Push => "pushed && pushed->size() == 1",
@@ -322,12 +324,8 @@ fn main(out: &mut Source, space: &str, run: &SampleRun<'_, '_>) {
             check(out, format!("{}(*client, reporter)", step.name()));
         }
         let mut streams = run.that(Verb::Subscribe).chain(run.that(Verb::Send));
-        if let Some(SampleStep {
-            sample: Sample::Subscribe(stream) | Sample::Send(stream, _),
-            ..
-        }) = streams.next()
-        {
-            let code = &stream.code.spelling;
+        if let Some(first) = streams.next() {
+            let code = &first.operation.code.spelling;
             out.line(format!("const {space}::Streams streams(client->data());"));
             check(out, "streams.data().connected()".to_owned());
             out.line("// The robot knows a data connection after its first frame.");

@@ -134,14 +134,14 @@ fn robot(out: &mut Source, context: &Context<'_>, run: &SampleRun<'_, '_>) {
         "Responds to every command with the samples of the documentation.",
     ]));
     let head = format!("internal class {name} : Robot");
-    if run.answers.is_empty() {
+    if !run.has(Verb::Call) {
         out.line(head);
         return;
     }
     out.block(head, |out| {
-        for answer in &run.answers {
+        for answer in run.answers() {
             out.blank();
-            write(out, context, answer);
+            write(out, context, &answer);
         }
     });
 }
@@ -152,12 +152,12 @@ pub fn samples_file(context: &Context<'_>) -> Source {
     let run = &SampleRun::build(context);
     let mut out = context.source();
     robot(&mut out, context, run);
-    for step in run.steps() {
+    for (step, sample) in run.samples() {
         let [name, ty] = step.parameter();
         let function = function_name(step);
         let head = format!("private suspend fun {function}({name}: {ty})");
         out.blank();
-        out.block(head, |out| write(out, context, &step.sample));
+        out.block(head, |out| write(out, context, &sample));
     }
     out.documented(&Docs::said([
         "运行全部示例，最后关闭 `client`；`server` 是它连接的机器人。",
@@ -199,16 +199,16 @@ pub fn samples_file(context: &Context<'_>) -> Source {
     out
 }
 
-fn call(step: &SampleStep<'_, '_>) -> String {
+fn call(step: SampleStep<'_>) -> String {
     let [parameter, _] = step.parameter();
     format!("{}({parameter})", function_name(step))
 }
 
-fn launched(step: &SampleStep<'_, '_>) -> String {
+fn launched(step: SampleStep<'_>) -> String {
     format!("launch(start = UNDISPATCHED) {{ {} }}", call(step))
 }
 
-fn function_name(step: &SampleStep<'_, '_>) -> String {
+fn function_name(step: SampleStep<'_>) -> String {
     let words = step.name();
     let (Ok(name) | Err(name)) = KOTLIN.spelling(Role::Function, &words);
     name.into_owned()

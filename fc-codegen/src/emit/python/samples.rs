@@ -97,17 +97,17 @@ pub fn samples_file(context: &Context<'_>, package: &str) -> String {
     let mut body = context.source();
     body.suite("class RobotOfTheSamples(Robot)", |out| {
         out.line("\"\"\"Responds with the samples.\"\"\"");
-        for answer in &run.answers {
+        for answer in run.answers() {
             out.blank();
-            write(out, &mut names, answer);
+            write(out, &mut names, &answer);
         }
     });
-    for step in run.steps() {
+    for (step, sample) in run.samples() {
         let [name, ty] = step.parameter();
         names.types.insert(ty.to_owned());
         body.gap();
         let head = format!("async def {}({name}: {ty}) -> None", step.name());
-        body.suite(&head, |out| write(out, &mut names, &step.sample));
+        body.suite(&head, |out| write(out, &mut names, &sample));
     }
     body.gap();
     test(&mut body, run);
@@ -151,7 +151,7 @@ class Samples(unittest.IsolatedAsyncioTestCase):
             async with Client.connect({config}) as client:"
     ));
     let line = |out: &mut Source, text: &str| out.line(["                ", text].concat());
-    let call = |step: &SampleStep<'_, '_>| format!("{}({})", step.name(), step.parameter()[0]);
+    let call = |step: SampleStep<'_>| format!("{}({})", step.name(), step.parameter()[0]);
     let wait = |out: &mut Source, verb: Verb| {
         for step in run.that(verb) {
             line(out, &format!("await {}", call(step)));

@@ -124,12 +124,12 @@ pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
     out.line(format!("struct {robot};"));
     out.blank();
     out.block(format!("impl Robot for {robot}"), |out| {
-        for answer in &run.answers {
+        for answer in run.answers() {
             out.blank();
-            write(out, context, answer);
+            write(out, context, &answer);
         }
     });
-    for step in run.steps() {
+    for (step, sample) in run.samples() {
         let parameter = match step.parameter() {
             _ if step.verb == Verb::Take => "mut reports: Reports".to_owned(),
             [name, ty] => format!("{name}: &{ty}"),
@@ -137,7 +137,7 @@ pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
         let head = format!("async fn {}({parameter}) -> {RESULT}", step.name());
         out.blank();
         out.block(head, |out| {
-            write(out, context, &step.sample);
+            write(out, context, &sample);
             out.line("Ok(())");
         });
     }
@@ -148,7 +148,7 @@ pub fn samples_file(context: &Context<'_>, krate: &str) -> String {
 /// The result type of every function.
 const RESULT: &str = "Result<(), Box<dyn std::error::Error>>";
 
-fn call(step: &SampleStep<'_, '_>) -> String {
+fn call(step: SampleStep<'_>) -> String {
     match step.parameter() {
         _ if step.verb == Verb::Take => format!("{}(client.reports())", step.name()),
         [name, _] => format!("{}(&{name})", step.name()),

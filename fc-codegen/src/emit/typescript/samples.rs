@@ -130,21 +130,21 @@ pub fn file(context: &Context<'_>) -> String {
     let mut names = Names::new(context);
     let mut body = context.source();
     let head = format!("class {robot} implements Robot");
-    if run.answers.is_empty() {
-        body.line([&head, " {}"].concat());
-    } else {
+    if run.has(Verb::Call) {
         body.block(head, |out| {
-            for answer in &run.answers {
+            for answer in run.answers() {
                 out.blank();
-                write(out, context, &mut names, answer);
+                write(out, context, &mut names, &answer);
             }
         });
+    } else {
+        body.line([&head, " {}"].concat());
     }
-    for step in run.steps() {
+    for (step, sample) in run.samples() {
         let (function, [name, ty]) = (function_name(step), step.parameter());
         let head = format!("async function {function}({name}: {ty}): Promise<void>");
         body.blank();
-        body.block(head, |out| write(out, context, &mut names, &step.sample));
+        body.block(head, |out| write(out, context, &mut names, &sample));
     }
     body.blank();
     run_all(&mut body, context, &robot, run);
@@ -179,11 +179,11 @@ pub fn file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn function_name(step: &SampleStep<'_, '_>) -> String {
+fn function_name(step: SampleStep<'_>) -> String {
     spelled(Role::Function, &step.name())
 }
 
-fn call(step: &SampleStep<'_, '_>) -> String {
+fn call(step: SampleStep<'_>) -> String {
     format!("{}({})", function_name(step), step.parameter()[0])
 }
 
