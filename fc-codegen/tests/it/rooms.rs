@@ -291,3 +291,46 @@ fn modules_use_only_earlier_ones() {
         assert_eq!(upwards(of), known, "in {}", of.name);
     }
 }
+
+/// Names in the sections of ARCHITECTURE about crates that are no file or folder of the crate.
+const NO_MODULES: [&str; 3] = ["async", "fc.yaml", "fcproto"];
+
+#[test]
+fn architecture_names_modules_of_each_crate() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("the root");
+    for page in ["ARCHITECTURE.md", "ARCHITECTURE.zh-CN.md"] {
+        let text = fs::read_to_string(root.join(page)).expect("a page");
+        let sections = text.split("\n### `").skip(1);
+        let sections = sections.filter_map(|section| section.split_once("`\n"));
+        let mut names = 0;
+        for (name, section) in sections {
+            let files: BTreeSet<PathBuf> = ["src", "tests", "examples", "faults", "vectors"]
+                .iter()
+                .map(|folder| root.join(name).join(folder))
+                .filter(|folder| folder.is_dir())
+                .flat_map(|folder| sources(&folder))
+                .collect();
+            let section = section.split("\n#").next().unwrap_or_default();
+            let quoted = section.split('`').skip(1).step_by(2);
+            let is_name = |it: &&str| {
+                it.chars()
+                    .all(|c| c.is_ascii_lowercase() || "._/".contains(c))
+            };
+            for word in quoted.filter(is_name) {
+                names += 1;
+                let is_there = NO_MODULES.contains(&word)
+                    || root.join(word).exists()
+                    || root.join(name).join(word).exists()
+                    || files.iter().any(|file| {
+                        let file = file.with_extension("");
+                        let word = Path::new(word).with_extension("");
+                        file.ancestors().any(|path| path.ends_with(&word))
+                    });
+                assert!(is_there, "{page}: {name} has no `{word}`");
+            }
+        }
+        assert!(names > 50, "{page} names {names} modules");
+    }
+}

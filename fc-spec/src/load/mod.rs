@@ -3,7 +3,7 @@
 //! 1. [`syntax`](crate::syntax) makes a tree of each file;
 //! 2. `shape` compares the trees with the language's `grammar`;
 //! 3. `lower` makes a draft of them: model items, each with its place;
-//! 4. `resolve` fills in derived values;
+//! 4. `resolve` fills in derived values, and `questions` lists the open questions;
 //! 5. `check` verifies names, codes, examples and gaps, which the grammar cannot express;
 //! 6. `partial` removes the places and builds the readable part, and the model if there is no error.
 //!
