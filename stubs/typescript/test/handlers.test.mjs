@@ -388,6 +388,8 @@ test('response_or_refusal_too_long_for_a_frame_is_an_error', async () => {
       { gzip },
     )
     assert.equal((await callEcho(refuses)).result, 1)
+    const { callsProtocol, callsRefused } = refuses.server.counters()
+    assert.deepEqual([callsProtocol, callsRefused], [1, 0])
   }
   // Even the protocol's own result does not fit.
   const one = watched({ echo: () => ({ text: '' }) }, { limits: { frameBytes: 60 } })
@@ -396,6 +398,7 @@ test('response_or_refusal_too_long_for_a_frame_is_an_error', async () => {
   await settle()
   assert.deepEqual(raw.take(), [])
   assert.equal(one.server.connections().length, 1)
+  assert.equal(one.server.counters().callsProtocol, 1)
 })
 
 test('request_report_and_stream_that_are_none_are_refused_by_name', async () => {

@@ -11,6 +11,7 @@ import { Refusal } from '../refusal.ts'
 import { Session } from '../session.ts'
 import type { FrameId } from '../session.ts'
 import { isLater } from '../thrown.ts'
+import type { Results } from '../wire.ts'
 import { Called } from './called.ts'
 import { Inlet } from './inlet.ts'
 import { Pace, inflated } from './pace.ts'
@@ -373,39 +374,16 @@ export class Peer {
     const { counters } = shared
     // A handler's own result may be invalid, which throws a `BodyError`.
     const data = shared.bodies.hasResult ? shared.bodies.writeResponse(result, keys, {}) : null
-    let isUsable = false
-    let ended: string
-    switch (result.code) {
-      case results.protocol.code:
-        counters.callsProtocol++
-        ended = 'protocol'
-        break
-      case results.timeout.code:
-        counters.callsTimedOut++
-        ended = 'timeout'
-        isUsable = true
-        break
-      case results.invalid.code:
-        counters.callsInvalid++
-        ended = 'invalid'
-        break
-      case results.expired.code:
-        counters.callsExpired++
-        ended = 'expired'
-        break
-      default:
-        counters.callsRefused++
-        ended = 'refused'
-        isUsable = true
-    }
+    const { ended, counter, isUsable } = endOf(results, result)
     const tell = (): void => {
+      counters[counter]++
       shared.callEnded(id.code, ended, since)
     }
     // The text of a result may quote the body: only the code is logged.
     shared.log.tell('debug', 'refused', { code: id.code, id: id.id, result: result.code })
     if (data) {
       // The protocol's own result is the shortest response.
-      const tooLong = result === results.protocol ? nothing : (): void => void this.refuse(id, results.protocol, since)
+      const tooLong = result === results.protocol ? tell : (): void => void this.refuse(id, results.protocol, since)
       this.post({ ...id, response: true }, data, tell, tooLong)
     } else tell()
     return isUsable ? 0 : this.pace.unusable(shared.now)
@@ -543,6 +521,30 @@ export class Peer {
 }
 
 const nothing = (): void => {}
+
+/** The end of a refused call. */
+interface End {
+  readonly ended: string
+  readonly counter: 'callsProtocol' | 'callsTimedOut' | 'callsInvalid' | 'callsExpired' | 'callsRefused'
+  /** The request was not useless. */
+  readonly isUsable: boolean
+}
+
+/** Returns the end of a call by its result. */
+function endOf(results: Results, { code }: ResultText): End {
+  switch (code) {
+    case results.protocol.code:
+      return { ended: 'protocol', counter: 'callsProtocol', isUsable: false }
+    case results.timeout.code:
+      return { ended: 'timeout', counter: 'callsTimedOut', isUsable: true }
+    case results.invalid.code:
+      return { ended: 'invalid', counter: 'callsInvalid', isUsable: false }
+    case results.expired.code:
+      return { ended: 'expired', counter: 'callsExpired', isUsable: false }
+    default:
+      return { ended: 'refused', counter: 'callsRefused', isUsable: true }
+  }
+}
 
 /** A handler whose signal was aborted may end with this error. */
 const isAbort = (problem: unknown): boolean => problem instanceof Error && problem.name === 'AbortError'
