@@ -95,7 +95,7 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
         if options.format == Shown::Text {
             print::done(&said!(
                 "没有能自动修改的错误\n",
-                "nothing that can be fixed without a choice\n"
+                "no error has a certain fix\n"
             ))?;
         }
         return Ok(spec);

@@ -105,7 +105,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let files = counted(run.changed, "文件", "file");
         print::message(&said!(
             "{files}没有排好版：运行 `fcproto fmt`\n",
-            "{files} not laid out: run `fcproto fmt`\n"
+            "{files} not formatted: run `fcproto fmt`\n"
         ))?;
     }
     let mut codes = faults.iter().map(|fault| fault.code);
@@ -162,7 +162,7 @@ impl Run<'_> {
                 let path = &file.path;
                 let line = said!(
                     "错误：`{path}` 保持不变：排版后含义会改变，这是 `fcproto fmt` 的缺陷",
-                    "error: `{path}` stays as it is: laid out, it would not say the same, which is a mistake of `fcproto fmt`"
+                    "error: `{path}` is unchanged: formatting would change its meaning, which is a bug of `fcproto fmt`"
                 );
                 self.mistakes += &(print::leveled(&line) + "\n");
             }
@@ -188,7 +188,7 @@ impl Run<'_> {
             writeln!(
                 self.shown,
                 "{} {path}",
-                print::good(&said!("已排版", "laid out"))
+                print::good(&said!("已排版", "formatted"))
             )?;
         } else if self.options.diff {
             let (before, after) = (format!("a/{path}"), format!("b/{path}"));

@@ -163,7 +163,10 @@ fn make(
     if let Some(out) = &options.out.as_ref().filter(|_| !options.check) {
         std::fs::create_dir_all(out).map_err(|error| {
             let out = out.display();
-            said!("无法创建 `{out}`：{error}", "cannot make `{out}`: {error}")
+            said!(
+                "无法创建 `{out}`：{error}",
+                "cannot create `{out}`: {error}"
+            )
         })?;
     }
     let plan = plan(artifacts, root, &options.only)?;
@@ -210,7 +213,7 @@ fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<St
     for path in &plan.foreign {
         out += &said!(
             "{path}：占用了位置，却不是生成器写的\n\n",
-            "{path}: in the way, and not written by the generator\n\n"
+            "{path}: exists, but the generator did not write it\n\n"
         );
     }
     print::result(&out)?;

@@ -63,7 +63,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if place.root.is_some() || place.spec.is_some() {
         return Err(said!(
             "`fcproto init DIR` 在 DIR 中建立项目；它没有 --root 和 --spec",
-            "`fcproto init DIR` makes a project in DIR; it has no --root and no --spec"
+            "`fcproto init DIR` creates a project in DIR; leave out --root and --spec"
         )
         .into());
     }
@@ -79,10 +79,13 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec: None,
     };
     let status = generate::run(&place, &generate::Options::default())?;
-    let (began, directory) = (print::good(&said!("已建立", "began")), directory.display());
+    let (created, directory) = (
+        print::good(&said!("已建立", "created")),
+        directory.display(),
+    );
     print::done(&said!(
-        "{began} {directory}\n下一步见其中的 README.md；在那里运行 `cargo test`，它的机器人和 app 就会互相通信\n",
-        "{began} {directory}\nits README.md says how to go on; `cargo test` there lets its robot and its app talk\n"
+        "{created} {directory}\n下一步见其中的 README.md；在那里运行 `cargo test`，它的机器人和 app 就会互相通信\n",
+        "{created} {directory}\nnext: read its README.md; `cargo test` there runs its robot and its app\n"
     ))?;
     Ok(status)
 }

@@ -100,11 +100,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Some(code) => said!("功能码 0x{code:04X}", "as 0x{code:04X}"),
         None => said!("没有功能码", "without a code"),
     };
-    let began = print::good(&said!("已加入", "began"));
+    let added = print::good(&said!("已加入", "added"));
     let (name, path, line) = (&options.name, &new.path, new.line);
     print::done(&said!(
-        "{began} {name}，{code}，在 {path}:{line}\n在那里写明它的作用，再运行 `fcproto generate`\n",
-        "{began} {name} {code} in {path}:{line}\nsay what it does there, then run `fcproto generate`\n"
+        "{added} {name}，{code}，在 {path}:{line}\n在那里写明它的作用，再运行 `fcproto generate`\n",
+        "{added} {name} {code} in {path}:{line}\ndescribe it there, then run `fcproto generate`\n"
     ))?;
     Ok(Status::Fine)
 }

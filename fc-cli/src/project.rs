@@ -117,7 +117,7 @@ fn root(place: &Place) -> Result<PathBuf, Failure> {
     let here = std::env::current_dir().map_err(|error| {
         said!(
             "无法得知当前目录：{error}；用 --root 指定",
-            "cannot tell the current directory: {error}; name one with --root"
+            "cannot find the current directory: {error}; name one with --root"
         )
     })?;
     above(place, &here)

@@ -129,7 +129,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if !change.left.is_empty() {
         text += &said!(
             "这些豁免已经用过，请删除：{left}\n",
-            "take these waivers out, they have served: {left}\n",
+            "remove these waivers, which are used up: {left}\n",
             left = Text::listed(&change.left)
         );
     }

@@ -99,7 +99,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         &(text
             + &said!(
                 "\n运行 `fcproto generate`，把它从由规范生成的所有内容中去掉\n",
-                "\nrun `fcproto generate` to take it out of everything that is made of the spec\n"
+                "\nrun `fcproto generate` to remove it from the generated files\n"
             )),
     )?;
     Ok(Status::Fine)

@@ -207,14 +207,14 @@ fn rest(model: &Model, ids: &[String]) -> String {
         [] => String::new(),
         same => said!(
             "，涉及相同内容的有：{same}",
-            ", about the same: {same}",
+            "; also open about it: {same}",
             same = Text::listed(same)
         ),
     };
     let left = counted(open.len(), "待确认的问题", "open question");
     said!(
         "还有 {left}{also}\n运行 `fcproto generate`，并重读前后文字中与它有关的说明\n",
-        "{left} left{also}\nrun `fcproto generate`, and read again what the texts around say of it\n"
+        "{left} left{also}\nrun `fcproto generate`, and check the texts that mention it\n"
     )
 }
 
@@ -262,7 +262,7 @@ impl Options {
         if values.is_empty() && !self.confirm && self.reply.is_none() {
             return Err(said!(
                 "什么也没有答复：给出一个值，或用 `--confirm` 确认规范现有的写法",
-                "nothing is said: give a value, or `--confirm` what the spec says already"
+                "there is no answer: give a value, or confirm the spec with `--confirm`"
             )
             .into());
         }

@@ -149,7 +149,7 @@ impl<'r, 'm> Talk<'r, 'm> {
     /// Runs a line.
     async fn send(&mut self, line: &str) -> Result<Status, Failure> {
         let words = shell_words::split(line)
-            .map_err(|_| said!("引号没有成对", "a quotation mark has no partner"))?;
+            .map_err(|_| said!("引号没有成对", "a quotation mark is not closed"))?;
         if words.is_empty() {
             return Ok(Status::Fine);
         }

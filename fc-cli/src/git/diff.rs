@@ -72,7 +72,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Some(words) if !words.is_empty() => shown += &words,
         words => {
             if words.is_some() {
-                shown += &said!("内容没有变化\n", "says the same as before\n");
+                shown += &said!("内容没有变化\n", "no change in meaning\n");
             }
             let name = |sign, side: &Side| match side.text {
                 Some(_) => format!("{sign}/{}", side.path.display()),

@@ -102,7 +102,7 @@ fn this_command() -> Result<String, Failure> {
     let path = std::env::current_exe().map_err(|error| {
         said!(
             "无法得知本程序的位置：{error}",
-            "cannot tell where this program is: {error}"
+            "cannot find this program: {error}"
         )
     })?;
     Ok(format!(
@@ -141,7 +141,7 @@ fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> 
             let (path, action) = (path.display(), action.trim_end());
             return Err(said!(
                 "已有钩子 `{path}`；把它移走，或在其中加入：\n{action}",
-                "there is a hook `{path}` already; move it away, or add to it:\n{action}"
+                "the hook `{path}` exists; move it away, or add to it:\n{action}"
             )
             .into());
         }

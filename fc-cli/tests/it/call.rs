@@ -238,7 +238,7 @@ fn lines_of_a_pipe_are_calls() {
         "effect `unknown`",
         "there is no command `lower`",
         "--nothing",
-        "a quotation mark has no partner",
+        "a quotation mark is not closed",
     ] {
         assert!(run.stderr.contains(part), "{part}: {run:#?}");
     }

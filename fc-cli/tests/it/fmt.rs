@@ -57,7 +57,7 @@ fn all_of_the_spec_is_laid_out_and_what_is_so_already_not_touched() {
     let project = project();
     let before = project.files("spec");
     let run = project.fc(&["fmt"]).expect(0);
-    assert_eq!(run.stdout, "laid out spec/commands/lamp.yaml\n");
+    assert_eq!(run.stdout, "formatted spec/commands/lamp.yaml\n");
     assert_eq!(run.stderr, "");
     assert_eq!(project.read("spec/commands/lamp.yaml"), LAID_OUT);
     let after = project.files("spec");
@@ -82,7 +82,7 @@ fn a_check_names_the_files_and_writes_nothing() {
     let before = project.files("spec");
     let run = project.fc(&["fmt", "--check"]).expect(1);
     assert_eq!(run.stdout, "spec/commands/lamp.yaml\n");
-    assert_eq!(run.stderr, "1 file not laid out: run `fcproto fmt`\n");
+    assert_eq!(run.stderr, "1 file not formatted: run `fcproto fmt`\n");
     let named = project.fc(&["fmt", "--check", "spec/protocol.yaml"]);
     assert_eq!(named.expect(0).stdout, "");
     assert_eq!(project.files("spec"), before);
@@ -114,7 +114,7 @@ fn files_are_named_one_by_one_from_anywhere() {
     let project = project();
     project.write("elsewhere/types.yaml", OTHER);
     let run = project.fc_in("elsewhere", &["fmt", "types.yaml"]).expect(0);
-    assert_eq!(run.stdout, "laid out types.yaml\n");
+    assert_eq!(run.stdout, "formatted types.yaml\n");
     assert_eq!(project.read("elsewhere/types.yaml"), LAID_OUT);
     assert_eq!(project.read("spec/commands/lamp.yaml"), OTHER);
 

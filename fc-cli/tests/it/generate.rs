@@ -164,7 +164,7 @@ fn what_the_generator_did_not_write_stays() {
     project.write("fc-generated/src/lib.rs", "// mine\n");
     let run = project.fc(&["generate", "--check"]).expect(1);
     assert!(
-        run.stdout.contains("fc-generated/src/lib.rs: in the way"),
+        run.stdout.contains("fc-generated/src/lib.rs: exists"),
         "{run:#?}"
     );
     let run = project.fc(&["generate"]).expect(2);

@@ -90,7 +90,7 @@ fn what_says_the_same_or_nothing_is_shown_as_lines() {
     project.append(LAMP, "# A remark.\n");
     says(
         &git(&project, &["diff"]),
-        &["says the same as before", "@@", "+# A remark."],
+        &["no change in meaning", "@@", "+# A remark."],
         &["FC07"],
     );
     project.append(LAMP, "commands: [\n");

@@ -10,7 +10,7 @@ use crate::support::git::git;
 fn a_project_checks_and_is_generated_at_once() {
     let place = Project::empty();
     let run = place.fc(&["init", "lamp"]).expect(0);
-    assert!(run.stdout.contains("\nbegan lamp\n"), "{run:#?}");
+    assert!(run.stdout.contains("\ncreated lamp\n"), "{run:#?}");
     for path in ["README.md", "fc.yaml", "src/lib.rs", "vectors/frames.json"] {
         assert!(place.path("lamp").join(path).is_file(), "{path}");
     }
@@ -153,7 +153,7 @@ fn git_compares_and_merges_what_it_has_without_another_line() {
 }
 
 #[test]
-fn what_cannot_be_is_said_before_anything_is_written() {
+fn wrong_usage_writes_nothing() {
     let place = Project::empty();
     for (arguments, message) in [
         (
@@ -162,7 +162,7 @@ fn what_cannot_be_is_said_before_anything_is_written() {
         ),
         (
             &["init", "lamp", "--root", "."],
-            "it has no --root and no --spec",
+            "leave out --root and --spec",
         ),
         (&["init"], "<DIR>"),
     ] {

@@ -13,7 +13,7 @@ fn a_command_begins_with_the_next_free_code() {
     let (begun, line) = said
         .split_once(" in spec/commands/lamp.yaml:")
         .expect("the place");
-    let code = begun.strip_prefix("began get_battery as ").expect("a code");
+    let code = begun.strip_prefix("added get_battery as ").expect("a code");
     let line: usize = line.parse().expect("a line number");
 
     let after = project.read("spec/commands/lamp.yaml");

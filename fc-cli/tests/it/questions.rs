@@ -157,7 +157,7 @@ fn nothing_is_written_that_would_not_be_sound() {
             vec!["C901", "--confirm"],
             "C901 needs a value for request.delay.unit",
         ),
-        (vec!["C901"], "nothing is said"),
+        (vec!["C901"], "there is no answer"),
         (vec!["C999", "--confirm"], "there is no question C999"),
     ] {
         let args: Vec<&str> = ["settle"]

@@ -1,4 +1,4 @@
-//! The remote: makes the lamp brighter and waits until it says so.
+//! The remote: makes the lamp brighter and waits for its report.
 //!
 //! ```text
 //! cargo run --example app
@@ -26,7 +26,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     client.set_light(&SetLightRequest::new(brightness)).await?;
     while let Some(report) = reports.recv().await {
         if let AnyReport::LightChanged(light) = report? {
-            println!("the lamp says: {} % and {:?}", light.brightness, light.mood);
+            println!("the lamp reports {} % and {:?}", light.brightness, light.mood);
             break;
         }
     }

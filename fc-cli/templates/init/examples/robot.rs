@@ -1,4 +1,4 @@
-//! The lamp: keeps how bright it is, and tells every app when that changes.
+//! The lamp: stores its light, and reports each change to every app.
 //!
 //! ```text
 //! cargo run --example robot
@@ -11,16 +11,16 @@ use std::time::Duration;
 use lamp_protocol::prelude::*;
 use tokio::sync::watch;
 
-/// A lamp that nobody has made yet.
+/// A simulated lamp.
 pub struct MyLamp {
-    /// What it shows; those who watch it are told of changes.
+    /// The light. Its receivers are notified of changes.
     light: watch::Sender<LightChanged>,
-    /// One change at a time.
+    /// Held during a change, so that changes do not overlap.
     changing: Mutex<()>,
 }
 
 impl MyLamp {
-    /// A lamp with this light.
+    /// Creates a lamp with this light.
     pub fn new(light: watch::Sender<LightChanged>) -> Self {
         Self {
             light,
@@ -58,17 +58,17 @@ impl Robot for MyLamp {
     }
 }
 
-/// Reports every change to every app, until the lamp is gone.
+/// Reports each change to every app, until the lamp is dropped.
 pub async fn report(reporter: Reporter, mut light: watch::Receiver<LightChanged>) {
     while light.changed().await.is_ok() {
         let now = light.borrow_and_update().clone();
         if let Err(error) = reporter.light_changed(Audience::All, &now).await {
-            eprintln!("not reported: {error}");
+            eprintln!("cannot report: {error}");
         }
     }
 }
 
-#[allow(dead_code, reason = "the test has no use for it")]
+#[allow(dead_code, reason = "the test does not call it")]
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> Result<(), Box<dyn Error>> {
     let (light, watched) = watch::channel(LightChanged::new(LightChangedFields {

@@ -1,4 +1,4 @@
-//! The lamp and its app talk.
+//! An app and the lamp exchange messages.
 
 #[path = "../examples/robot.rs"]
 mod robot;
@@ -12,7 +12,7 @@ use robot::MyLamp;
 use tokio::sync::watch;
 
 #[tokio::test(flavor = "current_thread")]
-async fn an_app_sets_the_light_and_is_told_of_it() -> Result<(), Box<dyn Error>> {
+async fn set_light_changes_the_light_and_is_reported() -> Result<(), Box<dyn Error>> {
     let (light, watched) = watch::channel(LightChanged::new(LightChangedFields {
         brightness: 0,
         mood: Mood::Warm,
@@ -33,12 +33,12 @@ async fn an_app_sets_the_light_and_is_told_of_it() -> Result<(), Box<dyn Error>>
     request.mood = Some(Mood::Cold);
     client.set_light(&request).await?;
     let Some(AnyReport::LightChanged(report)) = reports.recv().await.transpose()? else {
-        return Err("another report".into());
+        return Err("unexpected report".into());
     };
     assert_eq!((report.brightness, &report.mood), (30, &Mood::Cold));
     let light = client.get_light(&GetLightRequest::new()).await?;
     assert_eq!((light.brightness, light.mood), (30, Mood::Cold));
-    // What the spec does not allow is not even sent.
+    // The client does not send a value that breaks the spec.
     assert!(client.set_light(&SetLightRequest::new(101)).await.is_err());
 
     drop(client);

@@ -114,7 +114,7 @@ fn a_waiver_in_braces_is_left_to_people() {
     let run = project
         .fc(&["release", "2026.12", "--today", "2026-12-01"])
         .expect(0);
-    let left = format!("take these waivers out, they have served: {id}\n");
+    let left = format!("remove these waivers, which are used up: {id}\n");
     assert!(run.stdout.contains(&left), "{run:#?}");
     assert_eq!(project.read("spec/waivers.yaml"), waivers);
 }

@@ -12,7 +12,7 @@ use robot::MyLamp;
 use tokio::sync::watch;
 
 #[tokio::test(flavor = "current_thread")]
-async fn an_app_sets_the_light_and_is_told_of_it() -> Result<(), Box<dyn Error>> {
+async fn set_light_changes_the_light_and_is_reported() -> Result<(), Box<dyn Error>> {
     let (light, watched) = watch::channel(LightChanged::new(LightChangedFields {
         brightness: 0,
         mood: Mood::Warm,
