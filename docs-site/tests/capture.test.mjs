@@ -85,7 +85,7 @@ for (const [name, parts, pieces, level] of CASES) {
   })
 }
 
-test('an incomplete frame says how many bytes are missing', () => {
+test('an incomplete frame shows the number of missing bytes', () => {
   const last = (...parts) => read(...parts).pieces.at(-1).missing
   assert.deepEqual(last(request, response.slice(0, -12)), { bytes: 12, atLeast: false })
   // Without its length only the header's is known.
@@ -93,7 +93,7 @@ test('an incomplete frame says how many bytes are missing', () => {
   assert.equal(last(request), null)
 })
 
-test('wherever a capture begins, the footing is found again', () => {
+test('decoding finds the next frame wherever a capture begins', () => {
   const all = join(request, response, next, request)
   for (let cut = 1; cut < all.length; cut++) {
     const { pieces } = lab.readCapture(codec, [{ stream: 0, bytes: all.slice(cut) }])
@@ -115,7 +115,7 @@ test('an unknown head is not explained as a request', () => {
   }
 })
 
-test('responses find their requests by kind, code and id, in whatever order', () => {
+test('responses match requests by kind, code and id in any order', () => {
   const partners = (...parts) => read(...parts).pieces.map(({ partner }) => partner)
   assert.deepEqual(partners(request, next, response), [2, null, 0])
   assert.deepEqual(partners(response, request), [1, 0])
@@ -131,7 +131,7 @@ test('a report sent again is told from a first one', () => {
   assert.deepEqual(pieces.map(({ repeats }) => repeats), [null, 0, null])
 })
 
-test('two streams are read apart, and listed in the order of what was pasted', () => {
+test('two streams are decoded apart and listed in pasted order', () => {
   const capture = lab.readCapture(codec, [
     { stream: 0, bytes: request },
     { stream: 1, bytes: response.slice(0, 40) },
@@ -148,7 +148,7 @@ test('comments are taken out of JSON, and nothing else', () => {
   assert.equal(lab.withoutComments('{"a": "// no"}'), null)
 })
 
-test('the state goes through an address and back, and a foreign address is none', () => {
+test('the state survives an address, and a foreign address has none', () => {
   const state = { paste: 'FC AA\n中', operation: operation.name, side: 'response', id: 9, gzip: true, json: null }
   assert.deepEqual(lab.fromHash('#' + lab.toHash(state)), state)
   // An emptied box for the id gives no number; the rest stays.

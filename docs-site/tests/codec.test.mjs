@@ -17,7 +17,7 @@ test('frames are taken and refused as the vectors say', () => {
   }
 })
 
-test('what is packed is unpacked, up to the limit', () => {
+test('packed data unpacks up to the limit', () => {
   const { gzip, gunzip } = codec.algorithms
   const large = Uint8Array.from({ length: 100_000 }, (_, at) => at * at)
   assert.deepEqual(gunzip(gzip(large), large.length), large)

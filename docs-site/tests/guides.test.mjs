@@ -44,6 +44,8 @@ function pagesOf(guide) {
  */
 function withoutLanguage({ info, text }) {
   if (info === 'text output') return { info }
+  // `.ci/walk` writes the transcript, in the language of the page.
+  if (info === 'text' && /^\$ fcproto /m.test(text)) return { info, text: text.split('\n').filter((line) => line.startsWith('$ ')) }
   return { info, text: info === 'sh' ? text.replace(/--lang (?:zh|en)\b/g, '--lang').replaceAll('.en.md', '.md') : text }
 }
 

@@ -37,7 +37,7 @@ for (const [page, { anchors: places = {}, others }] of Object.entries(MOVED)) {
   }
 }
 
-test('an anchor leads to its new place, and any other stays', () => {
+test('a moved anchor leads to its new place, others stay', () => {
   const promises = movedFrom('guides/promises.md')
   assert.equal(movedFrom('en/guides/promises.md'), promises)
   assert.equal(movedFrom('en/guides/limits.md'), undefined)
@@ -45,7 +45,7 @@ test('an anchor leads to its new place, and any other stays', () => {
   for (const hash of ['', '#', '#calls', '#constructor', '#%']) assert.equal(led(promises, hash), null, hash)
 })
 
-test('an anchor that a page does not have leads to its results', () => {
+test('an anchor missing from its page leads to the results', () => {
   const performance = movedFrom('guides/performance.md')
   assert.equal(led(performance, '#%E5%B8%A7', ['summary']), 'performance-results.html#%E5%B8%A7')
   for (const hash of ['', '#summary', '#%']) assert.equal(led(performance, hash, ['summary']), null, hash)

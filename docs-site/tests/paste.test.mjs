@@ -31,7 +31,7 @@ for (const { name, text, segments, spelling, refused } of forms) {
   })
 }
 
-test('what the laboratory writes it reads', () => {
+test('the laboratory reads its own output', () => {
   const bytes = Uint8Array.from({ length: 256 }, (_, byte) => byte)
   for (const text of [lab.hex(bytes), lab.cArray(bytes, 'f'), lab.ncLine(bytes, '127.0.0.1', 1)]) {
     assert.deepEqual(lab.readPaste(text, heads).segments, [{ stream: 0, bytes }], text)
@@ -48,7 +48,7 @@ test('too much text is refused before it is read', () => {
   assert.throws(() => lab.readPaste(' '.repeat(lab.PASTE_LIMIT + 1), heads), lab.Refusal)
 })
 
-test('a paste of half a million bytes is read, and taken apart', () => {
+test('a paste of half a million bytes is decoded', () => {
   const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
   const frame = lab.messageFrame(codec, operation, { side: 'request', id: 1, gzip: false }, operation.requestExample)
   const bytes = new Uint8Array(500_000)
@@ -156,7 +156,7 @@ for (const [name, file] of FILES) {
   })
 }
 
-test('a new connection between the same ports is another stream', () => {
+test('a new connection of the same ports is another stream', () => {
   const again = [packet(APP, ROBOT, 70, [], SYN), packet(APP, ROBOT, 71, request)]
   const { segments } = lab.readPaste(lab.readFile(pcap([...TALK, ...again]), heads), heads)
   assert.deepEqual(streams(segments), [request, response, request])
@@ -167,7 +167,7 @@ test('the rest of a capture with a hole is read', () => {
   assert.deepEqual(streams(segments), [request, [...rest, ...response]])
 })
 
-test('a capture without frames is refused with its number of packets', () => {
+test('a capture without frames is refused with its packet count', () => {
   assert.throws(() => lab.readFile(pcap([web, udp]), heads), (problem) => {
     assert.ok(problem instanceof lab.Refusal, String(problem))
     assert.match(problem.text.en, /2 packets, 1 of them TCP/)

@@ -42,7 +42,7 @@ const CASES = [
 
 for (const [name, lines, rows] of CASES) test(name, () => assert.deepEqual(shown(...lines), rows))
 
-test('what is no state diagram is refused', () => {
+test('an invalid state diagram is refused', () => {
   assert.throws(() => chains('stateDiagram-v2\n  s0 --> s1'), /no box/)
   assert.throws(() => chains('stateDiagram-v2\n  note left of s0'), /not drawn/)
 })

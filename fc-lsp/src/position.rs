@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beyond_ends_up_at_an_end() {
+    fn positions_beyond_the_end_are_clamped() {
         let file = SourceFile::new("x.yaml", TEXT);
         let at = |line, character| Encoding::Utf16.offset(&file, Position { line, character });
         assert_eq!(at(0, 999), TEXT.find('\r').unwrap_or_default());

@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_snapshot_is_checked_before_what_waits_for_it() {
+    fn newest_snapshot_is_checked_before_requests() {
         let mut queue = Queue::default();
         queue.check("old");
         assert_eq!(queue.ask(id(1), "first"), Ok(()));
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_taken_back_is_not_answered() {
+    fn cancelled_request_is_not_answered() {
         let mut queue = Queue::<(), _>::default();
         for at in 1..=3 {
             assert_eq!(queue.ask(id(at), at), Ok(()));

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[fc_test::test]
-    fn an_error_says_what_is_asked() {
+    fn error_states_the_condition() {
         let missing = check::<u8>("speed", &None, WHEN, true).map_err(|error| error.to_string());
         let expected = "`speed` is missing: it is sent when `mode` is 4 or 5 and `on` is true";
         assert_eq!(missing, Err(expected.to_owned()));

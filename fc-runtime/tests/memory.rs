@@ -197,7 +197,7 @@ const FACTOR: usize = 4;
 const CONSTANT: usize = MIB / 2;
 
 #[fc_test::test]
-fn no_frame_costs_much_more_than_was_received_and_inflated() {
+fn frame_costs_little_more_than_its_bytes() {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let allowance = Allowance {
         list_bytes: MIB / 8,

@@ -12,7 +12,7 @@ const SHORT: Duration = Duration::from_millis(10);
 
 #[fc_test::test(within = SHORT)]
 #[should_panic(expected = "not over after 10ms")]
-fn what_blocks_is_not_waited_for() {
+fn blocking_test_is_stopped() {
     loop {
         park();
     }
@@ -20,7 +20,7 @@ fn what_blocks_is_not_waited_for() {
 
 #[fc_test::test(within = SHORT)]
 #[should_panic(expected = "not over after 10ms")]
-async fn what_is_never_woken_is_not_waited_for() {
+async fn test_that_never_wakes_is_stopped() {
     pending::<()>().await;
 }
 

@@ -40,7 +40,7 @@ test('every reference is looked at', needs(existsSync(folder), 'needs npm run ap
   assert.deepEqual(readdirSync(folder).filter((language) => !(language in REFERENCES)), [])
 })
 
-test('cpp: what is in a namespace and in no class has its page, too', needs(there('cpp'), 'needs npm run api cpp'), () => {
+test('cpp: free functions of a namespace have a page', needs(there('cpp'), 'needs npm run api cpp'), () => {
   for (const [page, names] of [
     ['namespacefc.html', ['service', 'refusal', 'ResultCode']],
     ['namespacefc__runtime.html', ['declared', 'check_conditions', 'CallErrorKind']],
@@ -50,7 +50,7 @@ test('cpp: what is in a namespace and in no class has its page, too', needs(ther
   }
 })
 
-test('cpp: what has no comment is told, but for constructors and operators', () => {
+test('cpp: items without a comment are listed, except constructors and operators', () => {
   const warning = (file, what) => `stubs/cpp/${file}:7: warning: ${what} is not documented.`
   const allowed = [
     warning('generated/include/fc/groups/cell.hpp', 'Member CellLocation(Value value) (function) of class fc::CellLocation'),
@@ -67,7 +67,7 @@ test('cpp: what has no comment is told, but for constructors and operators', () 
   assert.equal(faults([...known, known[0]].join('\n')).length, WITHOUT_COMMENT + 2)
 })
 
-test('kotlin: its guide says that it has no pages, and its build makes none', needs(existsSync(dist), 'needs npm run build'), () => {
+test('kotlin: the guide and the build agree on having no pages', needs(existsSync(dist), 'needs npm run build'), () => {
   assert.doesNotMatch(readFileSync(path.join(root, 'stubs/kotlin/build.gradle.kts'), 'utf8'), /dokka/i)
   for (const guides of ['/guides', '/en/guides']) assert.match(html(`${guides}/first-call-kotlin.html`), /id="dokka"[^]*build\.gradle\.kts/)
 })

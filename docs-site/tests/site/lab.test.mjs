@@ -53,7 +53,7 @@ const numberIn = (hex, role) => {
 /** The frame with its last byte changed, which its digest then does not fit. */
 const spoiled = (hex) => hex.replace(/..$/, (byte) => (byte === '7D' ? '7C' : '7D'))
 
-test('every accepted frame is decoded, every rejected one refused by its name', driven, async () => {
+test('accepted frames are decoded, rejected ones refused by name', driven, async () => {
   await withSite(async ({ open, faults }) => {
     const page = await laboratory(open)
     const cases = vectors.flatMap((file) =>
@@ -81,7 +81,7 @@ test('every accepted frame is decoded, every rejected one refused by its name', 
   })
 })
 
-test('every example becomes the golden frame, and bodies without a code are judged all the same', driven, async () => {
+test('examples become golden frames, and bodies without a code are checked', driven, async () => {
   await withSite(async ({ open, faults }) => {
     const page = await laboratory(open)
     const wrong = []
@@ -117,7 +117,7 @@ test('every example becomes the golden frame, and bodies without a code are judg
   })
 })
 
-test('the frame comes as hex, as a C array and as a line for nc', driven, async () => {
+test('the frame is shown as hex, C array and nc command', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open, '/en/lab/index.html')
     await page.locator('[data-field=operation]').selectOption('get_robot_sn')
@@ -191,7 +191,7 @@ test('the id of the box is the id of the frame', driven, async () => {
   })
 })
 
-test('the box for gzip packs the frame, and the frame opens again', driven, async () => {
+test('the gzip option packs the frame, and the frame opens again', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     const value = (role) => protocol.encodings.find((encoding) => encoding.role === role).value
@@ -208,7 +208,7 @@ test('the box for gzip packs the frame, and the frame opens again', driven, asyn
   })
 })
 
-test('a check that fails says what was expected and what was found', driven, async () => {
+test('a failed check shows the expected and the found value', driven, async () => {
   await withSite(async ({ open }) => {
     await inBoth(open, async (page, english) => {
       const frame = hexOf('request', 1)
@@ -223,7 +223,7 @@ test('a check that fails says what was expected and what was found', driven, asy
   })
 })
 
-test('a check that fails is crossed, and those before it are ticked', driven, async () => {
+test('a failed check is crossed, earlier ones are ticked', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     const marks = () => page.locator('.fc-verdicts li').evaluateAll((all) => all.map((one) => [one.dataset.check, one.textContent.trim()[0]]))
@@ -234,7 +234,7 @@ test('a check that fails is crossed, and those before it are ticked', driven, as
   })
 })
 
-test('the bytes of a field at fault stand out, and only they', driven, async () => {
+test('only the bytes of the wrong field are highlighted', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     const red = () =>
@@ -270,7 +270,7 @@ test('a fault in a body names the place', driven, async () => {
   })
 })
 
-test('a fault in a body says what is wrong', driven, async () => {
+test('an error in a body has its message', driven, async () => {
   await withSite(async ({ open }) => {
     await inBoth(open, async (page, english) => {
       await paste(page, faulty().hex)
@@ -281,7 +281,7 @@ test('a fault in a body says what is wrong', driven, async () => {
   })
 })
 
-test('a capture gets one verdict, and it is good only if all of it is', driven, async () => {
+test('a capture is good only if every frame is', driven, async () => {
   await withSite(async ({ open, faults }) => {
     await inBoth(open, async (page, english) => {
       const overall = page.locator('[data-out=overall]')
@@ -309,7 +309,7 @@ test('a capture gets one verdict, and it is good only if all of it is', driven, 
   })
 })
 
-test('each frame of a capture can be looked at, by mouse and by keyboard', driven, async () => {
+test('each frame of a capture opens by mouse and keyboard', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     await paste(page, `${hexOf('request', 7)} ${hexOf('request', 8)} ${hexOf('response', 7)}`)
@@ -325,7 +325,7 @@ test('each frame of a capture can be looked at, by mouse and by keyboard', drive
   })
 })
 
-test('of a long capture the first frames are listed, and the one that is shown in any case', driven, async () => {
+test('a long capture lists its first frames and the open one', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     const pieces = page.locator('[data-out=piece]')
@@ -361,7 +361,7 @@ test('a request leads to its response', driven, async () => {
   })
 })
 
-test('what is no frame is refused with the reason', driven, async () => {
+test('invalid bytes are refused with the reason', driven, async () => {
   await withSite(async ({ open }) => {
     await inBoth(open, async (page, english) => {
       await paste(page, '{"cmdTime": 1}')
@@ -371,7 +371,7 @@ test('what is no frame is refused with the reason', driven, async () => {
   })
 })
 
-test('without scripts the page asks for them and has no verdict', driven, async () => {
+test('without scripts the page asks for them', driven, async () => {
   for (const url of ['/lab/index.html', '/en/lab/index.html']) {
     assert.doesNotMatch(html(url), /data-out="(?:overall|piece|fault|findings|refused)"|fc-verdict|✓|✕/, url)
   }
@@ -436,7 +436,7 @@ test('a file is opened, dropped or pasted', driven, async () => {
 
 const CLIPBOARD = { permissions: ['clipboard-read', 'clipboard-write'] }
 
-test('a frame is copied, and the button says so', driven, async () => {
+test('the copy button copies the frame and confirms it', driven, async () => {
   await withSite(async ({ open }) => {
     for (const url of ['/lab/index.html', '/en/lab/index.html', '/reference/commands/get_robot_sn.html']) {
       const page = await open(url, CLIPBOARD)
@@ -451,7 +451,7 @@ test('a frame is copied, and the button says so', driven, async () => {
   })
 })
 
-test('a frame is copied where the browser offers no clipboard', driven, async () => {
+test('a frame is copied without a clipboard API', driven, async () => {
   await withSite(async ({ base, open }) => {
     const page = await open()
     // As on a page over plain http.
@@ -489,7 +489,7 @@ test('a sample of JSON is copied without its comments', driven, async () => {
   })
 })
 
-test('comments in JSON are named, and taken out if one wants it', driven, async () => {
+test('comments in JSON are reported and removable', driven, async () => {
   await withSite(async ({ open }) => {
     await inBoth(open, async (page, english) => {
       const json = page.locator('[data-field=json]')
@@ -502,7 +502,7 @@ test('comments in JSON are named, and taken out if one wants it', driven, async 
   })
 })
 
-test('what was pasted survives a reload', driven, async () => {
+test('pasted input survives a reload', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     assert.equal(new URL(page.url()).hash, '')
@@ -515,7 +515,7 @@ test('what was pasted survives a reload', driven, async () => {
   })
 })
 
-test('what is too long for an address is kept by the tab', driven, async () => {
+test('input too long for an address is kept by the tab', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     const long = randomBytes(6000).toString('hex')
@@ -528,7 +528,7 @@ test('what is too long for an address is kept by the tab', driven, async () => {
   })
 })
 
-test('what was pasted goes along into the other language', driven, async () => {
+test('pasted input moves to the other language', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await laboratory(open)
     const text = hexOf('response', 7)
@@ -545,7 +545,7 @@ test('what was pasted goes along into the other language', driven, async () => {
   })
 })
 
-test('a link opens the laboratory with what it was made of', driven, async () => {
+test('a link opens the laboratory with its input', driven, async () => {
   await withSite(async ({ open, faults }) => {
     const state = { paste: hexOf('response', 7), operation: command.name, side: 'response', id: 77, gzip: true, json: '{}' }
     const page = await laboratory(open, `/en/lab/index.html#${lab.toHash(state)}`)
@@ -559,7 +559,7 @@ test('a link opens the laboratory with what it was made of', driven, async () =>
   })
 })
 
-test('input and verdict stand on the first screen of phone and tablet', driven, async () => {
+test('input and verdict are on the first screen of phone and tablet', driven, async () => {
   await withSite(async ({ open }) => {
     for (const viewport of [{ width: 390, height: 844 }, { width: 820, height: 1180 }, { width: 1440, height: 900 }]) {
       await inBoth(

@@ -11,7 +11,7 @@ const built = needs(existsSync(path.join(dist, 'index.html')), 'needs the built 
 
 const decode = (text) => text.replace(/&amp;/g, '&').replace(/&quot;/g, '"').replace(/&#39;/g, "'")
 
-test('no link is dead, no anchor missing, nothing comes from another host', built, () => {
+test('links and anchors resolve, and no file is from another host', built, () => {
   const files = readdirSync(dist, { recursive: true, encoding: 'utf8' }).map((file) => '/' + file.split(path.sep).join('/'))
   const ids = new Map()
   const html = new Map()

@@ -24,7 +24,7 @@ test('no page has an error or asks another host', driven, async () => {
   })
 })
 
-test('an unknown address says so in its language', driven, async () => {
+test('an unknown address has an error page in its language', driven, async () => {
   await withSite(async ({ base, open }) => {
     const page = await open()
     for (const [url, words] of [['/nothing.html', '页面不存在'], ['/en/nothing.html', 'Page not found']]) {
@@ -35,7 +35,7 @@ test('an unknown address says so in its language', driven, async () => {
   })
 })
 
-test('a link to a section that has moved leads to its new page', driven, async () => {
+test('a link to a moved section leads to its new page', driven, async () => {
   await withSite(async ({ base, open, faults }) => {
     const page = await open()
     for (const [from, to] of [
@@ -194,7 +194,7 @@ test('the changelog has headings of years', built, () => {
   }
 })
 
-test('the first view of any page is under 300 kB compressed', driven, async () => {
+test('each page loads less than 300 kB compressed', driven, async () => {
   await withSite(async ({ base, browser }) => {
     const heaviest = pages()
       .filter((url) => !url.startsWith('/en/'))
@@ -229,7 +229,7 @@ test('no page but the lab loads the protocol as data', built, () => {
   assert.deepEqual(holders.map((name) => name.split('.')[0]), ['FrameLab'])
 })
 
-test('the open questions are all there without scripts, and the filter hides the others', driven, async () => {
+test('open questions are complete without scripts, and the filter works', driven, async () => {
   await withSite(async ({ open, faults }) => {
     const bare = await open('/reference/open-questions.html', { javaScriptEnabled: false })
     const all = await bare.locator('.fc-question').count()
@@ -252,7 +252,7 @@ test('the open questions are all there without scripts, and the filter hides the
   })
 })
 
-test('the codes are all there without scripts, and the filter hides what an audience does not have', driven, async () => {
+test('codes are complete without scripts, and the audience filter works', driven, async () => {
   await withSite(async ({ open, faults }) => {
     const row = (page, audience) => page.locator(`tr:has(.fc-limit[data-for~=${audience}])`)
     const bare = await open('/reference/codes.html', { javaScriptEnabled: false })
@@ -275,7 +275,7 @@ test('the codes are all there without scripts, and the filter hides what an audi
   })
 })
 
-test('motion stops for whoever asks, and the keyboard reaches every field of a frame', driven, async () => {
+test('reduced motion is respected, and the keyboard reaches every frame field', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await open('/reference/commands/get_robot_sn.html', { reducedMotion: 'reduce' })
     await alive(page)

@@ -67,7 +67,7 @@ test('a free code is found', built, async () => {
   }
 })
 
-test('pages of the protocol rank above pages of the spec language', built, async () => {
+test('protocol pages rank above spec language pages', built, async () => {
   for (const [locale, queries] of [['root', ['枚举', '默认值', '单位', '号段', '上报']], ['en', ['enum', 'default', 'unit', 'range', 'example', 'report', 'timeout']]]) {
     const search = await searcher(locale)
     for (const query of queries) {
@@ -92,6 +92,6 @@ test('words that only ask change nothing', built, async () => {
   assert.notEqual((await searcher('en'))('the').length, 0)
 })
 
-test('what stands in neither language is not found', built, async () => {
+test('words in neither language have no results', built, async () => {
   for (const locale of ['root', 'en']) assert.deepEqual((await searcher(locale))('zzqqxx'), [])
 })

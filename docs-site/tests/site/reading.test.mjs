@@ -40,7 +40,7 @@ test('a field lies further in than what it lies in', driven, async () => {
   })
 })
 
-test('a field can be linked to, and its link leads to it, with scripts and without', driven, async () => {
+test('the link of a field works with and without scripts', driven, async () => {
   await withSite(async ({ base, open, faults }) => {
     const url = deepest('en')
     const page = await open(url, { reducedMotion: 'reduce' })
@@ -73,7 +73,7 @@ test('a field can be linked to, and its link leads to it, with scripts and witho
   })
 })
 
-test('a phone shows a field as a block and a wide table as cards', driven, async () => {
+test('phones show fields as blocks and wide tables as cards', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await open(deepest('zh'))
     await look(page, PHONE)
@@ -99,7 +99,7 @@ test('a phone shows a field as a block and a wide table as cards', driven, async
   })
 })
 
-test('paper has the text alone, black on white, and every byte', driven, async () => {
+test('print has only the text, black on white, with every byte', driven, async () => {
   await withSite(async ({ open }) => {
     const url = pageWithMost((html) => html.split('class="fc-more').length, 'en')
     const page = await open()
@@ -176,7 +176,7 @@ test('a long frame shows all its bytes when asked', driven, async () => {
   })
 })
 
-test('the home page and the sidebar lead to every operation', driven, async () => {
+test('every operation is reachable from the home page and the sidebar', driven, async () => {
   await withSite(async ({ open, faults }) => {
     for (const language of LANGUAGES) {
       const base = language === 'en' ? '/en/' : '/'
@@ -198,7 +198,7 @@ test('the home page and the sidebar lead to every operation', driven, async () =
   })
 })
 
-test('the line under a title is badges, and no drawn frame is said again as a table', driven, async () => {
+test('titles have badges, and drawn frames have no table', driven, async () => {
   await withSite(async ({ open }) => {
     const operations = pages().filter((url) => /\/reference\/(commands|reports|streams)\//.test(url))
     assert.deepEqual(operations.filter((url) => !/<p class="fc-badges">(?!<\/p>)[^·]*<\/p>/.test(html(url).replace(/<\/?(?:span|code)\b[^>]*>|<!--.*?-->/g, ''))), [])

@@ -27,7 +27,7 @@ const shown = (page) =>
 const PYTHON = ['Python python', 'Python python']
 const RUST = ['Rust rust', 'Rust rust']
 
-test('every command and report is shown in the same languages, in the app and on the robot', built, async () => {
+test('app and robot samples have the same languages', built, async () => {
   const { protocol } = await engine()
   const languages = rows(COMMAND)[0]
   assert.ok(['Rust', 'TypeScript', 'Python'].every((language) => languages.includes(language)), languages.join())
@@ -49,7 +49,7 @@ test('without scripts each language can be looked at', driven, async () => {
   })
 })
 
-test('a language chosen by keyboard holds for all code, and what was chosen stays where it was', driven, async () => {
+test('a language chosen by keyboard applies to all code without scrolling', driven, async () => {
   await withSite(async ({ open, faults }) => {
     // Where the code above is longer in one language than in the other.
     const difference = (html) => {
@@ -83,7 +83,7 @@ test('a language chosen by keyboard holds for all code, and what was chosen stay
   })
 })
 
-test('the choice goes along to other pages, the other language of the site and the next visit', driven, async () => {
+test('the choice applies to other pages and later visits', driven, async () => {
   await withSite(async ({ base, browser, open, faults }) => {
     const page = await open(COMMAND)
     await alive(page)
@@ -109,7 +109,7 @@ test('the choice goes along to other pages, the other language of the site and t
   })
 })
 
-test('paper has the code that was chosen, and the name of its language alone', driven, async () => {
+test('print has the chosen code and its language only', driven, async () => {
   await withSite(async ({ open }) => {
     const page = await open(COMMAND)
     await alive(page)

@@ -12,7 +12,7 @@ fn says(project: &Project, directory: &str, word: &str) -> bool {
 }
 
 #[test]
-fn what_an_audience_has_goes_into_a_directory_of_its_own() {
+fn audience_is_generated_into_its_own_directory() {
     let project = Project::new();
     project.fc(&["generate"]).expect(0);
     let before = project.files("");
@@ -59,7 +59,7 @@ fn a_project_is_no_place_for_a_part() {
 }
 
 #[test]
-fn an_audience_that_the_spec_does_not_declare_is_refused_with_those_that_it_does() {
+fn unknown_audience_is_refused_with_the_known_ones() {
     let project = Project::new();
     let message =
         "there is no audience `usr`; the spec declares `user_app`, `service_app`, `tester_app`";
@@ -80,7 +80,7 @@ fn an_audience_that_the_spec_does_not_declare_is_refused_with_those_that_it_does
 }
 
 #[test]
-fn a_target_with_an_audience_holds_what_that_audience_has() {
+fn target_has_only_the_part_of_its_audience() {
     let project = Project::new();
     let targets = "  rust: { out: app, audience: user_app }\n  typescript: { out: all }\n";
     project.write("fc.yaml", &format!("targets:\n{targets}"));

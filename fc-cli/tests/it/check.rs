@@ -183,7 +183,7 @@ fn help_says_how_it_ends() {
 
 /// A reader that goes away (`fcproto explain | head`) is no failure.
 #[test]
-fn nobody_reads_the_rest() {
+fn closed_stdout_is_no_failure() {
     let mut command = support::command(&["explain"]);
     let mut child = command
         .stdout(Stdio::piped())
@@ -252,7 +252,7 @@ fn paths_for_code_hosts_count_from_the_repository() {
 
 /// Where a part of the spec is not there at all, that is said, and not what follows from it.
 #[test]
-fn what_is_missing_is_the_only_fault() {
+fn missing_part_is_the_only_error() {
     let faults = |project: &Project| -> Vec<String> {
         let run = project
             .fc(&["check", "--root", ".", "--format", "json"])

@@ -30,7 +30,7 @@ Without a code
 ";
 
 #[test]
-fn the_map_says_who_has_what_and_what_comes_next() {
+fn codes_list_owners_and_the_next_free_code() {
     assert_eq!(Project::new().fc(&["codes"]).expect(0).stdout, MAP);
     let chinese = Project::new().fc(&["codes", "--lang", "zh"]).expect(0);
     for line in [
@@ -44,7 +44,7 @@ fn the_map_says_who_has_what_and_what_comes_next() {
 }
 
 #[test]
-fn of_single_codes_it_says_what_may_become_of_them() {
+fn codes_show_the_state_of_single_codes() {
     let codes = "codes 0x0101 259 0x0105 0x0203 0x0300 0x0400 0x0501 0x9999";
     let codes: Vec<&str> = codes.split(' ').collect();
     let run = Project::new().fc(&codes).expect(0);

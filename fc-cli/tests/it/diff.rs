@@ -144,7 +144,7 @@ FC0700 protocol.version: a change that no rule judges (7 → 8)
 }
 
 #[test]
-fn the_same_spec_has_no_changes_wherever_it_comes_from() {
+fn equal_specs_of_any_source_have_no_changes() {
     let project = project();
     for call in [
         &["diff", "old"][..],
@@ -200,7 +200,7 @@ fn git_has_the_old_version() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_said() {
+fn diff_names_versions_it_cannot_read() {
     let project = project();
     for (old, status, said) in [
         ("nowhere", 2, "cannot read `nowhere`"),

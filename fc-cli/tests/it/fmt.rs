@@ -53,7 +53,7 @@ fn piped(args: &[&str], text: &str) -> Run {
 }
 
 #[test]
-fn all_of_the_spec_is_laid_out_and_what_is_so_already_not_touched() {
+fn fmt_writes_only_files_that_change() {
     let project = project();
     let before = project.files("spec");
     let run = project.fc(&["fmt"]).expect(0);
@@ -145,7 +145,7 @@ fn standard_input_comes_back_laid_out() {
 }
 
 #[test]
-fn what_cannot_be_read_stays_as_it_is_and_the_others_do_not_wait_for_it() {
+fn unreadable_file_stays_and_others_are_formatted() {
     for (text, fault) in [(BROKEN, "error[FC00"), (UNKNOWN, "error[FC0101]")] {
         let project = project();
         project.write("spec/broken.yaml", text);
@@ -167,7 +167,7 @@ fn line_ends_stay_those_of_the_file() {
 }
 
 #[test]
-fn what_is_begun_is_laid_out() {
+fn new_operation_is_formatted() {
     let place = Project::empty();
     place.fc(&["init", "lamp"]).expect(0);
     place.fc_in("lamp", &["fmt", "--check"]).expect(0);

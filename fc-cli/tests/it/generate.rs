@@ -24,7 +24,7 @@ fn a_second_run_changes_nothing() {
 }
 
 #[test]
-fn check_shows_what_is_stale_and_writes_nothing() {
+fn check_shows_stale_files_and_writes_nothing() {
     let project = generated();
     let path = "fc-generated/src/lib.rs";
     project.append(path, "// by hand\n");
@@ -159,7 +159,7 @@ fn only_some_products() {
 }
 
 #[test]
-fn what_the_generator_did_not_write_stays() {
+fn files_of_others_stay() {
     let project = Project::new();
     project.write("fc-generated/src/lib.rs", "// mine\n");
     let run = project.fc(&["generate", "--check"]).expect(1);

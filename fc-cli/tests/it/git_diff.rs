@@ -85,7 +85,7 @@ fn a_change_over_several_files_is_told_of_each_apart() {
 }
 
 #[test]
-fn what_says_the_same_or_nothing_is_shown_as_lines() {
+fn diff_without_changed_meaning_shows_lines() {
     let project = project();
     project.append(LAMP, "# A remark.\n");
     says(

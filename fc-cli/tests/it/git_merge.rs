@@ -116,7 +116,7 @@ fn is_whole(project: &Project) {
 }
 
 #[test]
-fn git_alone_leaves_conflicts_in_the_spec_and_in_what_is_generated() {
+fn git_alone_leaves_conflicts() {
     let project = project();
     branches(&project);
     let (merged, text) = run_git(&project, &["merge", "--no-edit", "apple"]);
@@ -127,7 +127,7 @@ fn git_alone_leaves_conflicts_in_the_spec_and_in_what_is_generated() {
 }
 
 #[test]
-fn both_commands_are_there_after_a_merge_and_what_is_generated_is_fresh() {
+fn merge_keeps_both_commands_and_generates() {
     for (ours, theirs) in [("apple", "pear"), ("pear", "apple")] {
         let project = project();
         set_up(&project, &[]);
@@ -144,7 +144,7 @@ fn both_commands_are_there_after_a_merge_and_what_is_generated_is_fresh() {
 }
 
 #[test]
-fn with_the_hooks_the_merge_is_committed_as_it_has_to_be() {
+fn hooks_complete_the_merge_commit() {
     let project = project();
     set_up(&project, &["--hooks"]);
     branches(&project);
@@ -175,7 +175,7 @@ fn a_commit_that_is_picked_has_no_conflict() {
 }
 
 #[test]
-fn what_both_have_changed_is_for_people_to_decide_and_is_the_only_conflict() {
+fn only_lines_changed_by_both_conflict() {
     let project = project();
     set_up(&project, &["--hooks"]);
     let change = |branch: &str, from: &str, to: &str| {
@@ -237,7 +237,7 @@ fn a_hook_of_somebody_else_stays() {
 
 /// The program was called `fc`, and its hooks call it by its path.
 #[test]
-fn hooks_that_call_the_old_name_are_written_anew() {
+fn hooks_with_the_old_name_are_replaced() {
     let project = project();
     set_up(&project, &["--hooks"]);
     let hooks = [".git/hooks/pre-commit", ".git/hooks/post-merge"];
@@ -251,7 +251,7 @@ fn hooks_that_call_the_old_name_are_written_anew() {
 }
 
 #[test]
-fn a_project_below_the_root_of_its_repository_is_found() {
+fn project_below_the_repository_root_is_found() {
     let outer = Project::empty();
     support::copy(&project().path("spec"), &outer.path("robots/lamp/spec"));
     let inner = |args: &[&str]| outer.fc_in("robots/lamp", args).expect(0);

@@ -127,7 +127,7 @@ fn chinese_project_differs_in_texts_only() {
 }
 
 #[test]
-fn nothing_of_anybody_else_is_touched() {
+fn setup_keeps_settings_of_others() {
     let place = Project::empty();
     place.write("mine/notes.txt", "mine\n");
     let run = place.fc(&["init", "mine"]).expect(2);
@@ -144,7 +144,7 @@ fn nothing_of_anybody_else_is_touched() {
 }
 
 #[test]
-fn git_compares_and_merges_what_it_has_without_another_line() {
+fn new_project_needs_no_git_attributes() {
     let place = Project::empty();
     place.fc(&["init", "lamp"]).expect(0);
     git(&place, &["init", "--quiet", "lamp"]);

@@ -108,7 +108,7 @@ fn explanations_follow() {
 
 /// So do commands that say something of their own, well or ill.
 #[test]
-fn what_commands_say_follows() {
+fn output_follows_the_language() {
     let project = Project::new();
     for (args, status, expected) in [
         (&["check"][..], 0, "检查完毕："),

@@ -88,7 +88,7 @@ fn errors_and_denied_warnings_fail() {
 }
 
 #[test]
-fn a_waiver_holds_until_its_date_and_is_nothing_to_fc_diff() {
+fn lint_waiver_expires_and_diff_ignores_it() {
     let project = project();
     let id = id(&project.fc(&["lint"]).expect(0));
     let waivers =
@@ -116,7 +116,7 @@ fn a_waiver_holds_until_its_date_and_is_nothing_to_fc_diff() {
 }
 
 #[test]
-fn settings_that_cannot_be_used_are_shown_with_their_place() {
+fn invalid_settings_are_shown_with_their_place() {
     let project = project();
     level(&project, "eror");
     let run = project.fc(&["lint"]).expect(2);
@@ -164,7 +164,7 @@ fn rules_are_explained_by_code_and_by_name() {
 }
 
 #[test]
-fn what_is_certain_is_mended() {
+fn certain_fixes_are_applied() {
     let project = Project::new();
     let good = project.read("spec/protocol.yaml");
     let broken = good.replacen("transport:", "transport：", 1);

@@ -65,7 +65,7 @@ fn commit(project: &Project) {
 }
 
 #[test]
-fn two_branches_with_a_command_each_merge_and_are_fresh() {
+fn two_branches_with_a_command_each_merge() {
     let project = project();
     branch(&project, "one", "left", 0x0A05);
     branch(&project, "two", "right", 0x0A06);
@@ -75,7 +75,7 @@ fn two_branches_with_a_command_each_merge_and_are_fresh() {
 }
 
 #[test]
-fn a_command_more_changes_no_line_of_what_is_generated() {
+fn added_command_changes_no_generated_line() {
     let project = project();
     branch(&project, "one", "left", 0x0A05);
     let changed = git(&project, &["diff", "--numstat", "main", "one"]);
@@ -86,7 +86,7 @@ fn a_command_more_changes_no_line_of_what_is_generated() {
 }
 
 #[test]
-fn what_is_generated_names_no_line_of_the_spec() {
+fn generated_files_name_no_line_numbers() {
     let project = project();
     assert!(git(&project, &["grep", "-l", "yaml"]).contains("reference/"));
     let (found, text) = run_git(&project, &["grep", "-E", r"\.yaml(:|#L)[0-9]"]);
@@ -94,7 +94,7 @@ fn what_is_generated_names_no_line_of_the_spec() {
 }
 
 #[test]
-fn one_code_on_two_branches_is_a_fault_after_the_merge() {
+fn same_code_on_two_branches_is_an_error() {
     let project = project();
     branch(&project, "one", "left", 0x0A05);
     branch(&project, "two", "right", 0x0A05);

@@ -101,7 +101,7 @@ fn the_code_comes_from_the_range_of_the_group() {
 }
 
 #[test]
-fn a_report_stands_behind_the_reports() {
+fn new_report_follows_the_reports() {
     let project = Project::new();
     let before = project.read("spec/commands/lamp.yaml");
     let run = project.fc(&["new", "battery_low", "--group", "lamp", "--report"]);
@@ -158,7 +158,7 @@ fn a_stream_shares_the_code_of_its_command() {
 }
 
 #[test]
-fn what_cannot_be_begun_changes_nothing() {
+fn refused_operation_changes_nothing() {
     let project = Project::new();
     let before = project.files("spec");
     for (arguments, status, said) in [
@@ -281,7 +281,7 @@ commands:
 
 /// What is only begun is remembered: a warning until the texts are written, in every format.
 #[test]
-fn what_is_still_to_be_written_is_a_warning() {
+fn placeholder_is_a_warning() {
     let project = Project::new();
     project
         .fc(&["new", "get_battery", "--group", "lamp"])

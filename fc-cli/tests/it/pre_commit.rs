@@ -21,7 +21,7 @@ fn hooks(project: &Project, home: &Project) -> Run {
 }
 
 #[test]
-fn they_look_at_the_layout_the_spec_and_what_is_generated() {
+fn hooks_check_format_spec_and_generated_files() {
     if Command::new("pre-commit")
         .arg("--version")
         .output()

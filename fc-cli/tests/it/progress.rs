@@ -72,7 +72,7 @@ fn on_a_terminal(project: &Project, options: &str, wanted: Option<&str>) -> Stri
 }
 
 #[test]
-fn who_waits_sees_for_what_and_then_no_more() {
+fn progress_appears_on_a_terminal_and_vanishes() {
     let said = on_a_terminal(&waiting(), "", Some("generating"));
     let (before, result) = said.rsplit_once("\x1b[K").expect("an end of the line");
     assert!(before.contains("generating"), "{said:?}");
@@ -80,7 +80,7 @@ fn who_waits_sees_for_what_and_then_no_more() {
 }
 
 #[test]
-fn nothing_is_shown_to_who_wants_none_of_it_and_in_a_pipe() {
+fn progress_is_hidden_when_quiet_or_piped() {
     let said = on_a_terminal(&waiting(), "-q", None);
     assert_eq!(said, "");
     let project = waiting();

@@ -75,7 +75,7 @@ Behaviour that is not described (1)
 }
 
 #[test]
-fn decisions_are_listed_when_asked_for_and_one_question_shows_its_lines() {
+fn questions_list_decisions_and_show_lines() {
     let project = project();
     let args = [
         "questions",
@@ -97,7 +97,7 @@ fn decisions_are_listed_when_asked_for_and_one_question_shows_its_lines() {
 }
 
 #[test]
-fn an_answer_is_written_down_and_published_as_confirmed() {
+fn settled_answer_is_written_and_confirmed() {
     let project = project();
     let args = [
         "settle",
@@ -143,7 +143,7 @@ fn an_answer_is_written_down_and_published_as_confirmed() {
 }
 
 #[test]
-fn nothing_is_written_that_would_not_be_sound() {
+fn answer_that_breaks_the_spec_writes_nothing() {
     let project = project();
     for (args, why) in [
         // No range has this code.
@@ -228,7 +228,7 @@ fn a_sheet_goes_out_and_comes_back() {
 }
 
 #[test]
-fn a_sheet_with_a_line_that_cannot_be_used_settles_nothing() {
+fn sheet_with_an_invalid_line_settles_nothing() {
     let project = project();
     let sheet = project
         .fc(&["questions", "--group", "asked", "--format", "csv"])

@@ -53,7 +53,7 @@ fn break_it(project: &Project) {
 }
 
 #[test]
-fn a_release_freezes_the_spec_and_tells_what_is_new() {
+fn release_freezes_the_spec_and_lists_changes() {
     let project = released();
     assert_eq!(
         project.read("spec/releases/CHANGELOG.md"),
@@ -121,7 +121,7 @@ First release, with 8 operations.
 }
 
 #[test]
-fn a_number_that_does_not_fit_is_refused_and_nothing_is_written() {
+fn unfit_release_number_writes_nothing() {
     let project = released();
     let before = project.files("spec");
     let refused = |number: &str, why: &str| {
@@ -170,7 +170,7 @@ fn optional_field_added_breaks_nothing() {
 }
 
 #[test]
-fn key_back_with_another_type_breaks_an_earlier_release() {
+fn key_back_with_another_type_breaks_a_release() {
     let project = Project::new();
     let heat = "        heat: { type: \"u8?\", example: 3, zh: 热度, en: Heat }\n";
     add_field(&project, heat);
@@ -265,7 +265,7 @@ fn refers_changed_breaks_sources_with_newtypes() {
 }
 
 #[test]
-fn what_a_release_said_is_made_again() {
+fn old_release_is_generated_again() {
     let project = released();
     project.fc(&["generate"]).expect(0);
     let before = project.read("fc-generated/vectors/frames.json");
@@ -293,7 +293,7 @@ fn what_a_release_said_is_made_again() {
 }
 
 #[test]
-fn the_first_release_is_not_before_the_version_of_the_spec() {
+fn first_release_is_at_least_the_spec_version() {
     let project = Project::new();
     let before = project.files("spec");
     let run = project.fc(&["release", "6.9"]).expect(1);
@@ -347,7 +347,7 @@ First release, with 8 operations.
 }
 
 #[test]
-fn what_people_have_written_into_the_changelog_stays() {
+fn changelog_keeps_handwritten_text() {
     let project = released();
     let path = "spec/releases/CHANGELOG.en.md";
     let old = "## 7 (2026-09-01)\n\nFirst release. Thanks to all.\n\n## 6\n\nLost.\n";
@@ -427,7 +427,7 @@ fn a_release_counts_before_a_directory_of_its_name() {
 }
 
 #[test]
-fn a_changelog_for_an_audience_has_what_is_for_it() {
+fn changelog_has_the_part_of_an_audience() {
     let project = released();
     let unknown = project.fc(&["changelog", "--for", "nobody"]).expect(2);
     assert!(unknown.stderr.contains("nobody"), "{unknown:#?}");

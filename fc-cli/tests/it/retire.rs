@@ -69,7 +69,7 @@ fn without(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn an_operation_goes_with_its_comments_and_types_and_leaves_its_code_behind() {
+fn retire_removes_comments_and_types_keeps_code() {
     let project = project();
     let protocol = project.read("spec/protocol.yaml");
     let call = [
@@ -139,7 +139,7 @@ fn a_spec_without_retired_codes_gets_a_list_of_them() {
 }
 
 #[test]
-fn what_is_still_named_shares_its_code_or_has_none_is_told() {
+fn retire_reports_uses_shared_and_missing_codes() {
     let project = project();
     let why = ["--zh", "无", "--en", "None"];
     let retire = |name| project.fc(&[&["retire", name][..], &why].concat());
@@ -160,7 +160,7 @@ fn what_is_still_named_shares_its_code_or_has_none_is_told() {
 }
 
 #[test]
-fn what_stands_in_braces_is_left_to_its_owner() {
+fn retire_refuses_flow_style() {
     let project = project();
     let flow = "group: { id: fan, zh: 风扇, en: Fan }\nreports: { fan_stuck: { code: 0x0208, zh: 卡住, en: Stuck, source: { sections: [] } } }\n";
     project.write(FAN, flow);

@@ -100,7 +100,7 @@ fn each_command_has_a_manual_page() {
 }
 
 #[test]
-fn who_asks_for_silence_hears_what_is_wrong_and_what_was_asked_for() {
+fn quiet_prints_errors_and_results() {
     let project = Project::new();
     for call in [
         &["-q", "check"][..],

@@ -23,7 +23,7 @@ fn program(project: &Project, path: &str, text: &str) {
 }
 
 #[test]
-fn the_project_is_found_from_inside_and_makes_what_it_says() {
+fn project_is_found_from_a_subdirectory() {
     let project = project("  vectors: { out: golden }\n");
     project.write("some/where/note.txt", "");
     project.fc_in("some/where", &["check"]).expect(0);
@@ -75,7 +75,7 @@ fn errors_of_the_settings_have_places_and_suggestions() {
 }
 
 #[test]
-fn a_plugin_gets_the_model_and_its_options_and_its_files_are_the_generators() {
+fn plugin_gets_model_and_options_and_writes_files() {
     let project = project("  mine: { plugin: tools/mine, out: made, options: { word: hello } }\n");
     program(
         &project,

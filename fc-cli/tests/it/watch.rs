@@ -102,7 +102,7 @@ fn save(project: &Project, path: &str, text: &str) {
 }
 
 #[test]
-fn it_works_at_once_and_after_each_change_and_ends_with_ctrl_c() {
+fn watch_generates_after_each_change_until_ctrl_c() {
     let project = Project::new();
     let watch = Watch::begin(&project, &[]);
     let said = watch.round();
@@ -183,7 +183,7 @@ fn files_and_the_directory_go_and_come_back() {
 }
 
 #[test]
-fn the_spec_may_lie_elsewhere_and_move_by_the_word_of_the_project() {
+fn watch_follows_the_spec_directory() {
     let project = Project::new();
     let at = |spec: &str| {
         format!(
@@ -205,7 +205,7 @@ fn the_spec_may_lie_elsewhere_and_move_by_the_word_of_the_project() {
 }
 
 #[test]
-fn what_makes_no_sense_is_wrong_usage() {
+fn watch_with_other_options_is_wrong_usage() {
     let project = Project::new();
     for other in ["--check", "--from=model.json"] {
         let run = project.fc(&["generate", "--watch", other]).expect(2);

@@ -37,7 +37,7 @@ fn a_name_or_code_leads_to_its_place() {
 }
 
 #[test]
-fn what_is_not_there_is_said_with_what_is_near() {
+fn unknown_name_has_a_suggestion() {
     let project = Project::new();
     project.write("spec/commands/lamp.yaml", GROUP);
     let run = project.fc(&["where", "get_lamp_color"]).expect(2);

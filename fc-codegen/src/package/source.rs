@@ -301,7 +301,7 @@ pub mod tests {
     }
 
     #[test]
-    fn blank_lines_stand_alone() {
+    fn blank_lines_do_not_repeat() {
         let mut out = Source::new(&BRACES, Languages::All);
         out.blank();
         out.block("mod a", |out| {

@@ -84,7 +84,7 @@ const ALWAYS: [&str; 18] = [
 ];
 
 #[test]
-fn an_addition_changes_the_files_of_its_group_and_what_lists_all() {
+fn addition_changes_its_group_and_the_indexes() {
     let before = made(LAMP);
     for (section, operation, further) in [
         (
@@ -122,7 +122,7 @@ fn an_addition_changes_the_files_of_its_group_and_what_lists_all() {
 
 /// The file of a group is called like the group, unless a file of the package is.
 #[test]
-fn a_group_may_be_called_like_a_part_of_the_kotlin_package() {
+fn group_may_have_the_name_of_a_kotlin_part() {
     for (id, file) in [
         ("client", "ClientGroup.kt"),
         ("protocol", "ProtocolGroup.kt"),

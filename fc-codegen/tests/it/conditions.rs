@@ -6,7 +6,7 @@ use fc_spec::model::TypeShape;
 use std::collections::BTreeSet;
 
 #[test]
-fn a_sample_has_a_field_exactly_where_its_condition_holds() {
+fn sample_has_a_field_if_its_condition_holds() {
     let profiles = [
         Profile::Example,
         Profile::Full,

@@ -50,7 +50,7 @@ fn what_is_imported_is_there() {
 /// Links in comments lead somewhere: what is named there is of the package or imported, or has its full name, since an import that
 /// comments alone use is refused by compilers that deny warnings.
 #[test]
-fn what_comments_link_to_is_there() {
+fn targets_of_comment_links_exist() {
     let place = root().join(Product::Kotlin.usual_place());
     let runtime = declared(&sources(&place.join("runtime/src/main")));
     let files = sources(&place.join("generated/src/main"));

@@ -155,7 +155,7 @@ fn assert_straight(page: &Artifact) {
 
 /// Outside of fences, Vue must see no expression and no tag but the few that the pages use themselves.
 #[test]
-fn nothing_in_a_page_is_code_for_vue() {
+fn pages_contain_no_vue_code() {
     for page in pages() {
         assert_no_code(&page);
     }

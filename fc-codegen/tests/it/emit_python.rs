@@ -34,7 +34,7 @@ fn files(model: &Model) -> HashMap<String, String> {
 
 /// Each fixture of `python/` says in comments at its top what must stand in which file: `# in src/demo/client.py: …`.
 #[test]
-fn every_fixture_is_said_as_it_expects() {
+fn fixtures_are_generated_as_expected() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
     let mut count = 0;
     let mut missing = Vec::new();
@@ -64,7 +64,7 @@ fn the_same_model_gives_the_same_bytes() {
 
 /// What the language says of behaviour that no type can say, where a programmer reads it.
 #[test]
-fn comments_say_what_no_type_does() {
+fn comments_state_facts_without_a_type() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-generated/tests/meter");
     let mut faults = Faults::new();
     let sources = read_dir(&root, Path::new("spec"), &mut faults);

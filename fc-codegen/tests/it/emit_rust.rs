@@ -75,7 +75,7 @@ fn the_same_model_gives_the_same_bytes() {
 
 /// What the language says of behaviour that no type can say, where a programmer reads it.
 #[test]
-fn comments_say_what_no_type_does() {
+fn comments_state_facts_without_a_type() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let files = rust::emit(
         &model(&root.join("fc-generated/tests/meter")),

@@ -151,7 +151,7 @@ fn a_field_has_a_type_and_a_schema() {
 }
 
 #[test]
-fn a_condition_asks_the_fields_beside_it_by_their_names() {
+fn conditions_name_sibling_fields() {
     let fields = "      the_mode: { zh: 模式, en: Mode, type: Mode, example: 2 }\n      \
                   speed: { zh: 速度, en: Speed, type: \"u8?\", when: { the_mode: [2] }, example: 1 }";
     let files = emitted(&model(&group(fields, "")));

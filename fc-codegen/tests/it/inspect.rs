@@ -237,7 +237,7 @@ fn model_in(project: &str) -> Model {
 
 /// Byte for byte, for protocols with other headers, names and orders of bytes.
 #[test]
-fn what_is_made_of_a_dump_is_what_is_made_of_the_spec() {
+fn dump_and_spec_generate_the_same() {
     for model in [
         good_spec::model(),
         model_in("."),
@@ -303,7 +303,7 @@ fn a_kept_dump_of_this_format_is_read() {
 
 /// For whom a thing is, as the documentation of the format says it; and what one audience has of it all.
 #[test]
-fn a_dump_says_for_whom_things_are() {
+fn dump_has_the_audiences() {
     let model = good_spec::model();
     let dump = inspect::json(&model);
     let dump: serde_json::Value = serde_json::from_str(&dump).expect("JSON");

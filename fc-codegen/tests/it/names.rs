@@ -83,7 +83,7 @@ fn the_name_of_the_protocol_is_a_type_as_well() {
 }
 
 #[test]
-fn keys_of_the_envelope_stand_next_to_each_other() {
+fn similar_envelope_keys_clash_in_some_languages() {
     let mut files = with("group: { id: bad, zh: 坏的, en: Bad }\n");
     for (_, text) in &mut files {
         *text = text.replacen("result: { type", "result: { name: sent_at1, type", 1);
@@ -94,7 +94,7 @@ fn keys_of_the_envelope_stand_next_to_each_other() {
 
 /// Where a language can have a name only in another spelling, it has that.
 #[test]
-fn what_a_language_keeps_to_itself_is_escaped() {
+fn reserved_words_are_escaped() {
     for (language, role, name, spelling) in [
         (&RUST, Role::Field, "type", "r#type"),
         (&RUST, Role::Field, "self", "self_"),

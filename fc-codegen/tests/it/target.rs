@@ -17,7 +17,7 @@ fn made(yaml: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_product_goes_where_it_is_told_and_nothing_else_is_made() {
+fn target_is_written_to_its_directory_alone() {
     let paths = made("targets:\n  vectors: { out: golden/frames/ }\n");
     assert!(paths.len() > 3);
     let outside = paths
@@ -32,7 +32,7 @@ fn a_product_goes_where_it_is_told_and_nothing_else_is_made() {
 }
 
 #[test]
-fn without_a_file_every_product_is_made_at_its_usual_place() {
+fn without_a_file_all_products_have_defaults() {
     let targets = Targets::default();
     for product in Product::ALL {
         assert_eq!(targets.place(product), Some(product.usual_place()));
@@ -117,7 +117,7 @@ fn ids_have_types_where_they_are_asked_for() {
 }
 
 #[test]
-fn what_the_file_cannot_say_is_refused_by_name() {
+fn invalid_settings_are_refused_by_name() {
     for (yaml, message) in [
         (
             "targets: [rust]",

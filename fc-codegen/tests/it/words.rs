@@ -210,7 +210,7 @@ fn no_text_of_the_spec_uses_a_forbidden_word() {
 }
 
 #[test]
-fn each_entry_catches_its_example_and_not_what_to_say_instead() {
+fn each_entry_catches_its_example_only() {
     let list = forbidden();
     for entry in &list {
         let caught = found(std::slice::from_ref(entry), "x.md", &entry.bad);

@@ -123,7 +123,7 @@ fn the_other_byte_order() {
 }
 
 #[test]
-fn a_short_digest_takes_the_byte_order_and_a_short_id_the_low_bits() {
+fn short_digest_has_byte_order_short_id_low_bits() {
     let mut header = Short::new(&[9], 1, 0x0203, 0x0001_0405, 77);
     let mut sum = [0; 16];
     sum[..4].copy_from_slice(&[0xCB, 0xF4, 0x39, 0x26]);
@@ -138,7 +138,7 @@ fn a_short_digest_takes_the_byte_order_and_a_short_id_the_low_bits() {
 }
 
 #[test]
-fn what_a_header_lacks_is_what_it_would_say_of_plain_data() {
+fn absent_header_fields_read_as_plain_data() {
     let mut header = Bare::new(&[9], 1, 2, 3, 77);
     header.seal(20, 77, [5; 16]);
     assert_eq!((header.encoding(), header.digest()), (0, [0; 16]));

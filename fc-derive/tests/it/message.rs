@@ -541,7 +541,7 @@ fn examples_are_read_and_transcoded() {
 }
 
 #[test]
-fn fields_say_what_is_required() {
+fn fields_struct_has_the_required_fields() {
     let lacking = |keys: &[&'static str]| {
         let keys: Vec<_> = keys.iter().map(|&key| key.into()).collect();
         fc_runtime::json::lacking::<Station>(&keys)

@@ -129,7 +129,7 @@ fn a_closed_enum_refuses_what_it_does_not_know() {
 }
 
 #[test]
-fn what_follows_is_what_is_said() {
+fn declared_successors_are_returned() {
     let unknown = Job::from("paused");
     for (previous, next, may) in [
         (Job::New, Job::Done, true),
@@ -166,7 +166,7 @@ fn what_follows_is_what_is_said() {
 
 /// A repeated state and a failure are always in order, as is any state without a rule.
 #[test]
-fn what_is_in_order_is_all_that_nothing_said_speaks_against() {
+fn order_allows_all_but_contradictions() {
     let unknown = Job::from("paused");
     for (previous, next, is) in [
         (Job::New, Job::Done, true),

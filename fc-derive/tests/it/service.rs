@@ -104,7 +104,7 @@ enum Mode {
 }
 
 #[test]
-fn a_command_knows_in_which_states_of_each_enum_it_is_accepted() {
+fn command_has_its_accepted_states() {
     assert!(Drive::accepted_in(&Brake::Off) && !Drive::accepted_in(&Brake::On("left".to_owned())));
     let modes = [Mode::Manual, Mode::Stopped, Mode::Automatic];
     assert_eq!(
@@ -273,7 +273,7 @@ impl Cart for Finished {
 }
 
 #[tokio::test]
-async fn what_a_partial_robot_leaves_out_is_refused_as_not_implemented() {
+async fn omitted_command_is_refused_as_not_implemented() {
     let (app, handle) = connected(CartService::new(Begun)).await;
     assert_eq!(app.call(&GetStation { id: 7 }).await.unwrap().id, 7);
     // Known to the protocol but not implemented: the text says this, and the robot counts it.

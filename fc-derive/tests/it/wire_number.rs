@@ -63,7 +63,7 @@ fn one_and_zero_are_read() {
 }
 
 #[test]
-fn nothing_else_is_read() {
+fn other_spellings_are_refused() {
     for text in [
         "2",
         "-1",

@@ -69,7 +69,7 @@ fn every_change_is_judged_as_it_should_be() {
 }
 
 #[test]
-fn whatever_is_found_is_found_the_other_way_by_a_mirror() {
+fn each_finding_has_a_mirror() {
     let base = base();
     let old = model(&base).expect("the spec");
     let mut seen = BTreeSet::new();
@@ -110,7 +110,7 @@ const UNSHOWN: [(&str, &str); 5] = [
 ];
 
 #[test]
-fn each_rule_has_a_mirror_or_says_why_not_and_its_texts() {
+fn each_rule_has_texts_and_a_mirror_or_a_reason() {
     let numbers: Vec<_> = Rule::all().map(|rule| rule.number).collect();
     assert_eq!(numbers, (0..=82).collect::<Vec<_>>());
     for rule in Rule::all() {
@@ -131,7 +131,7 @@ fn each_rule_has_a_mirror_or_says_why_not_and_its_texts() {
 }
 
 #[test]
-fn a_spec_is_as_it_is() {
+fn equal_specs_have_no_findings() {
     let model = model(&base()).expect("the spec");
     assert_eq!(
         diff(&model, &model).iter().map(line).collect::<Vec<_>>(),

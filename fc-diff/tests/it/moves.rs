@@ -43,7 +43,7 @@ fn operations_in_another_order_say_the_same() {
 }
 
 #[test]
-fn types_in_the_file_of_a_group_have_moved_and_nothing_else() {
+fn moved_types_are_the_only_finding() {
     let base = base();
     let types = base.iter().find(|(_, file)| file.path == TYPES);
     let types = types.expect("types of no group").1.text.clone();

@@ -41,7 +41,7 @@ fn names(objections: &[Objection]) -> Vec<&'static str> {
 }
 
 #[test]
-fn a_number_moves_as_far_as_what_has_changed() {
+fn release_number_moves_by_the_changes() {
     let nothing = Vec::new();
     let text =
         found(|found| !found.is_empty() && found.iter().all(|it| it.rule.about == About::Text));
@@ -77,7 +77,7 @@ fn a_number_moves_as_far_as_what_has_changed() {
 }
 
 #[test]
-fn what_is_waived_asks_for_no_more_than_what_is_new() {
+fn waived_change_needs_the_step_of_an_addition() {
     let mut found = found(breaks);
     let text = Text {
         zh: "已商定".to_owned(),
@@ -120,7 +120,7 @@ fn a_code_that_is_used_again_is_never_released() {
 }
 
 #[test]
-fn a_number_does_not_come_before_the_version_that_the_spec_has() {
+fn release_number_is_at_least_the_spec_version() {
     for (next, version, goes) in [
         ("2026.08", "2026.09", true),
         ("2026.09", "2026.09", false),
@@ -137,7 +137,7 @@ fn a_number_does_not_come_before_the_version_that_the_spec_has() {
 }
 
 #[test]
-fn a_waiver_that_fits_nothing_is_found_where_that_can_be_said() {
+fn unused_waiver_is_found_when_decidable() {
     let waiver = |id: &str| Waiver {
         id: id.to_owned(),
         reason: Text {
@@ -179,7 +179,7 @@ fn a_waiver_that_fits_nothing_is_found_where_that_can_be_said() {
 }
 
 #[test]
-fn what_is_no_number_is_refused() {
+fn invalid_release_number_is_refused() {
     for text in [
         "",
         ".",

@@ -4,7 +4,7 @@ use crate::support::{base, model};
 use fc_diff::gone_early;
 
 #[test]
-fn what_is_gone_before_its_last_day_was_not_announced() {
+fn removal_before_its_sunset_is_unannounced() {
     let old = model(&base()).expect("the spec");
     let withdrawn = old.operations.iter().find_map(|it| {
         let sunset = it.deprecated.as_ref()?.sunset.clone()?;

@@ -92,7 +92,7 @@ fn asks(kind: u8, code: u16, id: u32) -> FrameId {
 }
 
 #[tokio::test]
-async fn what_a_robot_refuses_is_not_answered() {
+async fn refused_request_gets_no_response() {
     let (address, handle, serving) = serve().await;
     let mut app = Raw::new(TcpStream::connect(address).await.unwrap());
     let command = |code, id| asks(Beacon::COMMAND, code, id);
@@ -155,7 +155,7 @@ async fn any_answer_to_a_report_acknowledges_it() {
 
 /// Without a digest, reports with the same id are told apart by their data.
 #[tokio::test]
-async fn an_app_acknowledges_what_it_takes_and_tells_reports_apart() {
+async fn app_acknowledges_and_distinguishes_reports() {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.unwrap();
     let config = ClientConfig::new()
         .host("127.0.0.1")

@@ -18,7 +18,7 @@ use std::path::Path;
 const NAME: &str = "get_battery";
 
 #[test]
-fn the_lines_of_the_readme_are_enough_and_leave_no_trace() {
+fn readme_steps_add_a_command_and_leave_no_trace() {
     let example = example("README.md");
     assert_eq!(example, self::example("README.zh-CN.md"));
     let project = tempfile::tempdir().unwrap();

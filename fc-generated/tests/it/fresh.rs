@@ -6,7 +6,7 @@ use fc_codegen::output::plan;
 use fc_codegen::target::Targets;
 
 #[test]
-fn what_is_committed_follows_from_the_spec() {
+fn committed_files_match_the_spec() {
     let root = support::root();
     let plan = plan(
         generate(&support::model(&root), &Targets::default()).unwrap(),

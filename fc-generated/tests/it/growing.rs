@@ -99,7 +99,7 @@ fn a_new_command_breaks_a_complete_robot_and_no_other() {
 
 #[test]
 #[ignore = "compiles a crate of its own"]
-fn a_new_optional_key_breaks_nobody() {
+fn new_optional_key_breaks_no_peer() {
     let tests = ["app.rs", "partial.rs", "complete.rs", "literal.rs"];
     let run = [
         "test", "--test", "app", "--test", "partial", "--test", "complete",

@@ -44,27 +44,27 @@ fn made_for(name: &str, project: &str, targets: &Targets, own: &str) {
 
 #[test]
 #[ignore = "compiles a crate of its own"]
-fn a_little_endian_protocol_with_crc_32_and_short_ids_compiles_and_talks() {
+fn little_endian_protocol_with_crc_32_works() {
     compiles_and_talks("meter");
 }
 
 /// They send the same bytes, which the vectors hold, and the samples of the docs compile with them.
 #[test]
 #[ignore = "compiles a crate of its own"]
-fn ids_with_types_of_their_own_compile_and_talk() {
+fn protocol_with_id_types_works() {
     let targets = Targets::of([Product::Rust]).with_newtypes();
     made_for("meter", "meter-ids", &targets, "ids.rs");
 }
 
 #[test]
 #[ignore = "compiles a crate of its own"]
-fn a_protocol_without_envelope_and_digest_compiles_and_talks() {
+fn protocol_without_envelope_and_digest_works() {
     compiles_and_talks("beacon");
 }
 
 /// The tests of the TypeScript package read what is committed.
 #[test]
-fn what_is_committed_follows_from_the_specs() {
+fn committed_packages_match_their_specs() {
     for name in ["meter", "beacon"] {
         let root = support::root().join("fc-generated/tests").join(name);
         let targets = Targets::read(&fs::read_to_string(root.join("fc.yaml")).unwrap()).unwrap();
@@ -77,7 +77,7 @@ fn what_is_committed_follows_from_the_specs() {
 /// Each audience of the meter has a whole protocol: a crate that compiles, without what is for the other.
 #[test]
 #[ignore = "compiles a crate of its own"]
-fn what_an_audience_has_compiles_and_holds_nothing_of_the_others() {
+fn package_of_an_audience_has_only_its_part() {
     let whole = model("meter");
     for (audience, names) in [("resident_app", [false; 3]), ("installer_app", [true; 3])] {
         let part = whole.for_audience(audience).unwrap();
@@ -109,7 +109,7 @@ fn what_an_audience_has_compiles_and_holds_nothing_of_the_others() {
 
 /// What is the real protocol's own must not come out of another.
 #[test]
-fn nothing_of_the_real_protocol_is_in_another() {
+fn other_protocols_have_no_part_of_the_real_one() {
     let words = ["MD5", "md5", "gzip", "cmdTime", "\"resultCode\"", "0xFC"];
     for name in ["meter", "beacon"] {
         for artifact in generate(&model(name), &Targets::default()).unwrap() {

@@ -69,7 +69,7 @@ fn is_not_implemented(refusal: &Refusal) -> bool {
 }
 
 #[tokio::test]
-async fn what_a_robot_leaves_out_is_told_apart_from_what_nobody_knows() {
+async fn omitted_and_unknown_commands_are_distinguished() {
     let (client, robot) = connected(RobotService::new(Empty)).await;
     let outcomes = call_all(&client).await;
     for outcome in &outcomes {

@@ -173,7 +173,7 @@ async fn bytes_over_the_data_port_belong_to_a_request() {
 }
 
 #[tokio::test]
-async fn what_the_spec_does_not_know_is_refused_and_the_connection_lives_on() {
+async fn unknown_code_is_refused_and_connection_stays() {
     let robot = Stub::start(RobotService::new(ExampleRobot::default())).await;
     let client = robot.client().await;
     let free = (0..=u16::MAX)

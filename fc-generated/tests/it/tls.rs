@@ -103,7 +103,7 @@ fn an_app_with_its_certificate_is_answered() {
 }
 
 #[test]
-fn a_certificate_of_another_authority_is_refused_by_either_side() {
+fn foreign_certificate_is_refused_by_both_sides() {
     let mut world = World::new();
     let other = Authority::new();
 
@@ -122,7 +122,7 @@ fn a_certificate_of_another_authority_is_refused_by_either_side() {
 
 /// Whoever talks no TLS, or says nothing at all, is refused or gives way.
 #[test]
-fn who_makes_no_handshake_keeps_nobody_out() {
+fn missing_handshake_blocks_no_other_app() {
     let mut world = World::new();
     let ports = world.robot.ports;
     let mut silent = Vec::new();

@@ -184,7 +184,7 @@ async fn a_robot_refuses_a_command_in_the_wrong_state() {
 
 /// What tools find without the types.
 #[test]
-fn an_operation_is_described_with_when_it_is_accepted_and_sent() {
+fn descriptor_has_conditions_and_cadence() {
     const STATES: &[States] = &[States {
         of: "Switch",
         values: &["\"open\"", "\"stuck\""],
@@ -233,7 +233,7 @@ impl PartialRobot for Closing {
 
 /// By the number that the answer and the reports have.
 #[tokio::test]
-async fn a_movement_is_followed_to_its_final_state_and_no_other() {
+async fn following_ends_at_the_final_state() {
     let (address, handle, serving) = serve(RobotService::new(Closing(5.into()))).await;
     let client = client(address).await;
     let reporter = Reporter::new(handle.clone());

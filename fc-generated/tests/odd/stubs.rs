@@ -8,7 +8,7 @@ use fc_generated::*;
 macro_rules! messages {
     ($($message:ident;)*) => {
         #[test]
-        fn examples_are_written_as_they_are_read() {
+        fn examples_survive_reading_and_writing() {
             $(
                 let example = <$message as fc_runtime::Message>::EXAMPLE;
                 let written = fc_runtime::transcode::<$message>(example.as_bytes()).unwrap();

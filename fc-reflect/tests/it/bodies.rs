@@ -87,7 +87,7 @@ fn every_value_has_its_name_place_and_description() {
 }
 
 #[test]
-fn where_the_reader_is_lenient_it_says_so() {
+fn lenient_reading_is_reported() {
     let model = specs::small();
     let reflector = Reflector::new(&model);
     for (key, value, quirk, written) in [
@@ -348,7 +348,7 @@ const WRONG: &[(&str, BodyErrorKind, &str, usize)] = &[
 ];
 
 #[test]
-fn what_is_wrong_is_named_and_placed() {
+fn errors_have_a_name_and_a_path() {
     let model = specs::small();
     let reflector = Reflector::new(&model);
     for (text, wanted, path, offset) in WRONG {
@@ -375,7 +375,7 @@ fn a_refusal_is_understood_although_it_lacks_the_body() {
 }
 
 #[test]
-fn what_breaks_a_constraint_is_not_sent() {
+fn body_that_breaks_a_constraint_is_not_sent() {
     let model = specs::small();
     let reflector = Reflector::new(&model);
     let operation = model.operation("set_light").expect("known");
@@ -396,7 +396,7 @@ fn what_breaks_a_constraint_is_not_sent() {
 }
 
 #[test]
-fn what_is_sensitive_is_not_shown() {
+fn sensitive_values_are_hidden() {
     let model = specs::small();
     let reflector = Reflector::new(&model);
     let message = request(&reflector, &model, r#"{"lvl":77,"key":"AQID"}"#);

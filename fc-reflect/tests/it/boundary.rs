@@ -6,7 +6,7 @@ use std::path::Path;
 const HERE: &str = env!("CARGO_MANIFEST_DIR");
 
 #[test]
-fn it_stands_on_the_model_and_the_runtime_without_a_network() {
+fn crate_depends_on_no_network_feature() {
     let manifest = fs::read_to_string(Path::new(HERE).join("Cargo.toml")).unwrap();
     let (_, behind) = manifest.split_once("\n[dependencies]\n").unwrap();
     let (dependencies, _) = behind.split_once("\n[").unwrap();

@@ -114,7 +114,7 @@ fn answered(model: &Model) -> impl Iterator<Item = &Operation> {
 }
 
 #[test]
-fn an_answer_has_the_id_of_its_request_and_the_result_that_was_chosen() {
+fn answer_has_the_request_id_and_chosen_result() {
     for model in models() {
         let reflector = Reflector::new(&model);
         for operation in answered(&model) {
@@ -160,7 +160,7 @@ fn has_no_keys(reflector: &Reflector<'_>, operation: &Operation) -> bool {
 }
 
 #[test]
-fn the_generated_package_takes_every_sample_and_every_answer() {
+fn generated_package_reads_samples_and_answers() {
     let model = support::specs::model();
     let reflector = Reflector::new(&model);
     let typed = Typed::new(&model);
@@ -198,7 +198,7 @@ fn the_generated_package_takes_every_sample_and_every_answer() {
 }
 
 #[test]
-fn what_is_not_answered_has_no_answer() {
+fn operation_without_response_has_no_answer() {
     let model = support::specs::small();
     let reflector = Reflector::new(&model);
     let result = model.results.last();
@@ -249,7 +249,7 @@ fn what_is_not_answered_has_no_answer() {
 
 /// Without a result code a response could only say that all went well.
 #[test]
-fn a_refusal_is_not_answered_where_no_response_says_how_it_went() {
+fn protocol_without_results_has_no_refusal() {
     let silent = |model: &Model| model.envelope.result_code().is_none();
     for model in models().into_iter().filter(silent) {
         let reflector = Reflector::new(&model);

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[fc_test::test]
-    fn agrees_with_another_implementation_at_every_length_around_block_ends() {
+    fn agrees_with_another_implementation_around_blocks() {
         let data = data(300);
         for length in 0..data.len() {
             let (data, _) = data.split_at(length);
@@ -252,7 +252,7 @@ mod tests {
 
     /// The session uses it to distinguish reports.
     #[fc_test::test]
-    fn other_data_has_another_fingerprint_whatever_the_algorithm() {
+    fn each_algorithm_distinguishes_data() {
         fn of<A: Compute>(data: &[u8]) -> Sum {
             A::fingerprint(A::of(data), data)
         }

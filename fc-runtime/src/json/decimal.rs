@@ -136,7 +136,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
         #[fc_test::test]
-        fn what_is_written_is_the_shortest(units in -2_000_000_000_000_000_i64..2_000_000_000_000_000, digits in 0..9_i32) {
+        fn written_number_is_the_shortest(units in -2_000_000_000_000_000_i64..2_000_000_000_000_000, digits in 0..9_i32) {
             #[allow(clippy::cast_precision_loss, reason = "any float will do")]
             let value = units as f64 / 10_f64.powi(digits);
             agrees(value)?;

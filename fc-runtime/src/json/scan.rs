@@ -63,7 +63,7 @@ mod tests {
     use super::plain_run;
 
     #[fc_test::test]
-    fn the_first_special_byte_is_found_wherever_it_stands() {
+    fn first_special_byte_is_found_at_each_position() {
         for special in [b'"', b'\\', 0, b'\n', 0x1F] {
             for length in 0..200 {
                 let mut bytes = vec![b'a'; length];

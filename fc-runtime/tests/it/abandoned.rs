@@ -113,7 +113,7 @@ fn reset(app: Raw<TcpStream>) {
 }
 
 #[fc_test::test]
-async fn a_motion_outlives_its_connection_and_a_read_does_not() {
+async fn motion_outlives_its_connection_and_read_ends() {
     for (code, body, outlives) in [
         (Go::CODE, GO, true),
         (UNKNOWN, b"{}".as_slice(), true),
@@ -146,7 +146,7 @@ async fn a_motion_outlives_its_connection_and_a_read_does_not() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_motion_outlives_its_timeout_and_the_app_hears_of_that_alone() {
+async fn motion_outlives_its_timeout_with_one_response() {
     for (code, body, outlives) in [(Go::CODE, GO, true), (Echo::CODE, ECHO, false)] {
         let slow = Slow::new();
         let seen = Arc::clone(&slow.seen);
@@ -260,7 +260,7 @@ async fn a_shutdown_waits_for_them_within_its_grace() {
 
 /// A handler that runs when the shutdown begins, and whose timeout comes before the end of the grace period.
 #[fc_test::test(start_paused = true)]
-async fn a_shutdown_waits_for_those_that_are_left_behind_meanwhile() {
+async fn shutdown_waits_for_detached_handlers() {
     let slow = Slow::new();
     let config = loopback().handler_timeout(SECOND);
     let robot = Robot::start(config, slow.clone()).await;
@@ -302,7 +302,7 @@ async fn no_more_are_begun_than_may_run_on() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn with_a_limit_of_none_motions_end_with_their_timeout() {
+async fn limit_of_zero_ends_motions_at_their_timeout() {
     let slow = Slow::new();
     let config = loopback().handler_timeout(SECOND).abandoned_handlers(0);
     let robot = Robot::start(config, slow.clone()).await;
@@ -316,7 +316,7 @@ async fn with_a_limit_of_none_motions_end_with_their_timeout() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_panic_of_one_that_runs_on_is_counted_and_nothing_else() {
+async fn panic_of_a_detached_handler_is_counted() {
     let robot = Robot::start(
         loopback().handler_timeout(SECOND),
         |request: Request<'_, Toy>| match request.code() {

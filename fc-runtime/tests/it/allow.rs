@@ -38,7 +38,7 @@ fn networks_are_read_and_shown() {
 }
 
 #[fc_test::test]
-fn what_is_no_network_is_refused_with_the_reason() {
+fn invalid_network_is_refused_with_a_reason() {
     type Expected = fn(&NetworkError) -> bool;
     let cases: [(&str, Expected, &str); 10] = [
         ("", |e| matches!(e, NetworkError::Address { .. }), "``"),
@@ -96,7 +96,7 @@ fn what_is_no_network_is_refused_with_the_reason() {
 }
 
 #[fc_test::test]
-fn a_network_holds_its_addresses_however_they_are_written() {
+fn network_contains_mapped_addresses() {
     let cases = [
         ("10.0.0.0/8", "10.255.255.255", true),
         ("10.0.0.0/8", "11.0.0.0", false),
@@ -156,7 +156,7 @@ async fn everybody_may_connect_unless_somebody_is_named() {
 }
 
 #[fc_test::test]
-async fn nobody_connects_from_elsewhere() {
+async fn address_outside_the_networks_cannot_connect() {
     let log = Log::listen(Level::WARN);
     let config = loopback().allow(network("10.0.0.0/8"), Effect::ALL);
     let (robot, _) = robot(config.allow(network("fd00::/8"), Effect::ALL)).await;
@@ -206,7 +206,7 @@ const ECHO: &str = r#"{"text":"x"}"#;
 const GO: &str = r#"{"metres":1}"#;
 
 #[fc_test::test]
-async fn who_may_only_read_moves_nothing() {
+async fn address_with_read_only_cannot_move() {
     let log = Log::listen(Level::WARN);
     let config = loopback()
         .allow(network("10.0.0.0/8"), Effect::ALL)

@@ -53,7 +53,7 @@ async fn requests_and_the_end_of_the_stream() {
 }
 
 #[fc_test::test]
-async fn requests_and_what_is_no_frame() {
+async fn requests_before_invalid_bytes_are_answered() {
     let robot = Robot::start(loopback(), service).await;
     for count in [10, 500] {
         let mut app = Raw::new(TcpStream::connect(robot.command).await.unwrap());

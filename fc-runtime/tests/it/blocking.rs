@@ -75,7 +75,7 @@ fn calls_are_answered_and_refused() {
 
 /// The app is not asked for its reports while they come.
 #[fc_test::test]
-fn reports_are_acknowledged_between_calls_and_waited_for() {
+fn reports_are_acknowledged_between_calls() {
     let (runtime, robot) = robot();
     let config = robot.config.clone().reconnect(None);
     let app = Connection::<Toy>::connect(config).unwrap();

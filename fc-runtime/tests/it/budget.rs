@@ -148,19 +148,19 @@ async fn who_holds_most_goes(port: Port) {
 }
 
 #[fc_test::test]
-async fn who_holds_most_at_the_command_port_goes_and_the_log_says_so() {
+async fn command_connection_with_most_memory_is_closed() {
     who_holds_most_goes(Port::Command).await;
 }
 
 #[fc_test::test]
-async fn who_holds_most_at_the_data_port_goes_and_the_log_says_so() {
+async fn data_connection_with_most_memory_is_closed() {
     who_holds_most_goes(Port::Data).await;
 }
 
 /// A connection to a silent app holds no memory. Otherwise many of them would use up the memory, and free and request
 /// it again endlessly.
 #[fc_test::test]
-async fn a_crowd_that_says_nothing_holds_nothing() {
+async fn silent_connections_hold_no_memory() {
     let _alone = alone();
     let limits = Limits {
         connections: 200,
@@ -187,7 +187,7 @@ async fn a_crowd_that_says_nothing_holds_nothing() {
 
 /// Memory that an app has used before does not count against it.
 #[fc_test::test]
-async fn memory_that_nobody_needs_is_given_back_first() {
+async fn unused_memory_is_released_first() {
     let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let mut apps = Vec::new();
@@ -339,7 +339,7 @@ async fn streams_count_until_they_are_taken() {
 /// At most half of the memory is held by streams that the robot does not take. The rest is freed with their
 /// connections.
 #[fc_test::test(start_paused = true)]
-async fn streams_that_nobody_takes_lock_nobody_out() {
+async fn unread_streams_block_no_connection() {
     let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let innocent = robot.connect().await;
@@ -416,7 +416,7 @@ struct Text {
 }
 
 #[fc_test::test]
-async fn answers_that_nobody_reads_count() {
+async fn unread_responses_count_as_memory() {
     let _alone = alone();
     let robot = Robot::start(config(), service).await;
     let request = frame(command(Echo::CODE, 1), text(700 * KIB).as_bytes());

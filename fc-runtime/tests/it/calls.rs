@@ -68,7 +68,7 @@ async fn a_refusal_carries_code_and_text() {
 }
 
 #[fc_test::test]
-async fn what_cannot_be_served_is_refused_by_its_result() {
+async fn unservable_request_is_refused_with_its_result() {
     let robot = Robot::start(loopback().max_age(Some(Duration::from_secs(60))), service).await;
     let app = robot.connect().await;
     for (code, body, expected) in [
@@ -306,7 +306,7 @@ fn leak<T>(value: T) -> &'static T {
 }
 
 #[fc_test::test]
-async fn a_waiting_handler_keeps_nobody_waiting() {
+async fn waiting_handler_delays_no_other_call() {
     let gate = leak(Semaphore::new(0));
     let robot = Robot::start(loopback(), gated(gate)).await;
     let app = robot.connect().await;

@@ -237,7 +237,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[fc_test::test]
-    fn every_call_ends_once_and_every_report_is_handed_on_once(steps in steps(), lose in any::<bool>()) {
+    fn calls_end_once_and_reports_arrive_once(steps in steps(), lose in any::<bool>()) {
         tokio::runtime::Builder::new_current_thread()
             .enable_time()
             .start_paused(true)

@@ -85,7 +85,7 @@ async fn one_address_alone_cannot_take_all() {
 
 /// From an app's view: silent connections from the same address do not lock it out.
 #[fc_test::test]
-async fn silent_connections_lock_nobody_out() {
+async fn silent_connections_give_way() {
     let _alone = alone();
     let config = ServerConfig::new().address(Ipv4Addr::LOCALHOST);
     let robot = Robot::start(config, service).await;
@@ -103,7 +103,7 @@ async fn silent_connections_lock_nobody_out() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
+async fn oldest_silent_connection_is_displaced() {
     let _alone = alone();
     for port in PORTS {
         let robot = robot(4, 4).await;
@@ -128,7 +128,7 @@ async fn who_has_spoken_stays_and_the_first_of_the_silent_goes() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn of_the_silent_the_largest_crowd_goes_first() {
+async fn largest_silent_address_gives_way_first() {
     let _alone = alone();
     for port in PORTS {
         let robot = robot(5, 4).await;
@@ -163,7 +163,7 @@ async fn an_address_that_is_full_displaces_its_own() {
 
 /// An app that takes streams and sends none is known by its commands.
 #[fc_test::test]
-async fn a_listener_at_the_data_port_is_known_by_its_commands() {
+async fn data_listener_is_known_by_its_command_connection() {
     let _alone = alone();
     let robot = robot(2, 2).await;
     let _app = App::connect(&robot, Port::Command, 1)

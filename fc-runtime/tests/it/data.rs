@@ -106,7 +106,7 @@ async fn a_frame_on_its_way_is_lost_with_its_connection() {
 
 /// The frame that was given up in the middle is told of by the next.
 #[fc_test::test(start_paused = true)]
-async fn a_frame_nobody_waits_for_is_not_lost_in_silence() {
+async fn cancelled_frame_is_reported_by_the_next() {
     let (data, robot, _kept) = data_of_raw(1000).await;
     let large = vec![0; 100_000];
     let second = Duration::from_secs(1);
@@ -119,7 +119,7 @@ async fn a_frame_nobody_waits_for_is_not_lost_in_silence() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn without_a_connection_sending_ends_in_time_and_says_why() {
+async fn sending_without_a_connection_times_out_with_reason() {
     let (app, _commands) = app_of_raw(ClientConfig::new());
     let refused = || async { Err::<DuplexStream, _>(ErrorKind::ConnectionRefused.into()) };
     let data = app.data_by(refused);
@@ -148,7 +148,7 @@ async fn without_a_connection_sending_ends_in_time_and_says_why() {
 
 /// A frame that was not sent in time is not sent later.
 #[fc_test::test(start_paused = true)]
-async fn what_was_not_sent_is_taken_back() {
+async fn unsent_frames_are_withdrawn() {
     let (app, mut dialled) = commands().await;
     let (data, mut ends) = data_over(&app, 10_000);
     drop((dialled.recv().await, ends.recv().await));

@@ -247,7 +247,7 @@ impl Wake for Counted {
 }
 
 #[fc_test::test]
-async fn streams_of_reports_that_are_gone_leave_nothing_behind() {
+async fn dropped_report_streams_release_memory() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
     let counted = Arc::new(Counted);

@@ -128,7 +128,7 @@ async fn accept(listener: &TcpListener) -> Raw<TcpStream> {
 }
 
 #[fc_test::test]
-async fn a_lost_connection_is_told_and_the_process_goes_on_with_the_next() {
+async fn following_continues_after_a_lost_connection() {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let at_once = Backoff {
         first: Duration::ZERO,
@@ -197,7 +197,7 @@ async fn a_failure_ends_it() {
 }
 
 #[fc_test::test]
-async fn what_comes_out_of_order_is_handed_on_and_counted() {
+async fn out_of_order_report_is_delivered_and_counted() {
     let (app, mut robot, mut following) = followed(ClientConfig::new()).await;
     // Not in the list: from ready to there, which ends the process. Before that: no change, and an unknown state.
     for (id, (said, counted)) in (1..).zip([
@@ -217,7 +217,7 @@ async fn what_comes_out_of_order_is_handed_on_and_counted() {
 
 /// A follower that does not receive misses reports that others take, and gets their number.
 #[fc_test::test]
-async fn what_has_been_missed_is_told_in_its_place() {
+async fn missed_reports_are_told_in_order() {
     let limits = Limits {
         queued_reports: 2,
         ..LIMITS
@@ -238,7 +238,7 @@ async fn what_has_been_missed_is_told_in_its_place() {
 
 /// The queue of a follower: a full one leaves reports to be repeated, and a dropped one takes no more.
 #[fc_test::test]
-async fn nothing_is_acknowledged_that_nobody_follows() {
+async fn report_without_a_follower_is_not_acknowledged() {
     let limits = Limits {
         queued_reports: 1,
         ..LIMITS
@@ -267,7 +267,7 @@ async fn nothing_is_acknowledged_that_nobody_follows() {
 
 /// By the key of the request that the report has as well.
 #[fc_test::test]
-async fn what_another_call_has_set_off_does_not_come() {
+async fn reports_of_another_call_are_not_delivered() {
     let (app, mut robot, mut following) = followed(ClientConfig::new()).await;
     let of = |metres: i32, step: &str| format!(r#"{{"step":"{step}","metres":{metres}}}"#);
     send(&mut robot, 1, &of(4, "stuck")).await;

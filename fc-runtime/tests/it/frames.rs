@@ -352,7 +352,7 @@ fn constant_header_fields_are_sent_and_not_judged() {
 }
 
 #[fc_test::test]
-fn a_long_announcement_costs_what_has_come_of_it() {
+fn announced_length_reserves_received_bytes_only() {
     let announced = with(command(1, 2), b"", |h| h.total = LIMITS.frame_bytes);
     let mut decoder = Decoder::<Toy>::new();
     decoder.push(&announced);

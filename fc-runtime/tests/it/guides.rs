@@ -48,7 +48,7 @@ fn stated(cell: &str) -> Option<String> {
 }
 
 #[fc_test::test]
-fn the_guides_state_the_defaults_as_they_are() {
+fn guides_state_the_current_defaults() {
     let (client, server) = (ClientConfig::new(), ServerConfig::new());
     let (client, server) = (format!("{client:?}"), format!("{server:?}"));
     let backoff = format!("{:?}", Backoff::default());

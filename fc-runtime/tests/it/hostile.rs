@@ -19,7 +19,7 @@ fn lie(id: FrameId, body: &[u8], change: impl FnOnce(&mut ToyHeader)) -> Vec<u8>
 }
 
 #[fc_test::test]
-async fn a_wrong_head_or_an_impossible_length_closes_its_own_connection() {
+async fn wrong_head_or_length_closes_only_its_connection() {
     let robot = Robot::start(loopback(), service).await;
     let innocent = robot.connect().await;
     let id = command(Echo::CODE, 1);
@@ -40,7 +40,7 @@ async fn a_wrong_head_or_an_impossible_length_closes_its_own_connection() {
 }
 
 #[fc_test::test]
-async fn a_frame_with_a_credible_length_is_answered_and_the_connection_lives() {
+async fn invalid_frame_of_known_length_is_answered() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     let id = command(Echo::CODE, 5);
@@ -66,7 +66,7 @@ async fn a_frame_with_a_credible_length_is_answered_and_the_connection_lives() {
 }
 
 #[fc_test::test]
-async fn answers_nobody_asked_for_are_ignored() {
+async fn unsolicited_responses_are_ignored() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     let id = command(Echo::CODE, 5);
@@ -155,7 +155,7 @@ async fn a_header_in_drops_is_not_waited_for() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_body_that_stops_or_comes_in_drops_is_not_waited_for() {
+async fn stalled_or_trickling_body_times_out() {
     for drops in [0, 10] {
         let robot = Robot::start(loopback(), service).await;
         let mut app = robot.raw();
@@ -251,7 +251,7 @@ async fn an_app_that_reads_slowly_is_kept() {
 }
 
 #[fc_test::test]
-async fn a_robot_that_floods_an_app_with_reports_costs_bounded_memory() {
+async fn flood_of_reports_costs_bounded_memory() {
     let limits = Limits {
         queued_reports: 10,
         ..LIMITS

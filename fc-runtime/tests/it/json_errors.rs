@@ -409,7 +409,7 @@ fn a_long_value_does_not_make_a_long_error() {
 }
 
 #[fc_test::test]
-fn what_is_checked_before_sending_has_a_path_too() {
+fn error_before_sending_has_a_path() {
     let inner = Data {
         id: 1,
         list: None,

@@ -52,7 +52,7 @@ proptest! {
     }
 
     #[fc_test::test]
-    fn what_is_nearly_json_is_judged_as_serde_json_judges_it(text in mutated()) {
+    fn near_json_is_judged_like_serde_json(text in mutated()) {
         check(&text)?;
     }
 
@@ -69,7 +69,7 @@ proptest! {
     }
 
     #[fc_test::test]
-    fn what_is_written_reads_the_same(text in text()) {
+    fn written_values_read_back_equal(text in text()) {
         let Ok(tree) = from_str::<Tree>(&text, Allowance::DEFAULT) else { return Ok(()) };
         let written = to_vec(&tree);
         let value: Value = serde_json::from_slice(&written).unwrap();
@@ -129,7 +129,7 @@ fn unknown_keys_come_out_as_they_came() {
 
 /// Unread values are passed on unchanged, even invalid ones.
 #[fc_test::test]
-fn what_nobody_reads_stays_as_it_is() {
+fn unknown_values_stay_verbatim() {
     for text in [
         r#"{"b":1,"b":2}"#,
         r#"{"b":{"c":1,"c":1}}"#,

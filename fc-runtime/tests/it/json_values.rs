@@ -269,7 +269,7 @@ fn judged_by_all(number: &str, value: Option<i128>) {
 }
 
 #[fc_test::test]
-fn an_integer_may_be_written_with_a_fraction_or_an_exponent() {
+fn integer_may_have_a_zero_fraction_or_exponent() {
     for (number, value) in INTEGRAL {
         judged_by_all(number, Some(*value));
     }

@@ -183,7 +183,7 @@ async fn damaged_frames_do_not_flood_an_apps_log() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn reports_that_nobody_gets_are_logged_and_do_not_flood() {
+async fn undelivered_reports_are_logged_with_a_limit() {
     let log = Log::listen(Level::INFO);
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut send = async |from: u32, count: u32| {
@@ -258,7 +258,7 @@ async fn neither_frames_nor_connections_flood_a_robots_log() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_robot_that_has_too_many_requests_says_so() {
+async fn busy_robot_logs_the_limit() {
     let log = Log::listen(Level::INFO);
     let limits = Limits {
         in_flight: 0,
@@ -274,7 +274,7 @@ async fn a_robot_that_has_too_many_requests_says_so() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn connections_that_come_and_go_do_not_flood_a_robots_log() {
+async fn short_connections_are_logged_with_a_limit() {
     let log = Log::listen(Level::INFO);
     let robot = Robot::start(loopback(), service).await;
     for number in 0..50 {

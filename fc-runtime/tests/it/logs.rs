@@ -51,7 +51,7 @@ impl Subscriber for Log {
 }
 
 #[fc_test::test]
-async fn spans_tell_code_name_and_id_and_nothing_tells_bodies() {
+async fn spans_have_code_name_and_id_but_no_bodies() {
     let log = Log::default();
     let _guard = tracing::subscriber::set_default(log.clone());
 

@@ -71,7 +71,7 @@ async fn the_second_of_two_is_left_to_the_driver() {
 
 /// Others have their answers and have not had their turn yet: what they ask for next goes with one write.
 #[fc_test::test]
-async fn the_first_of_many_with_answers_is_left_to_the_driver() {
+async fn first_of_many_calls_is_left_to_the_driver() {
     let (app, mut robot) = idle().await;
     let request = echo("x");
     let (mut one, mut two) = (pin!(app.call(&request)), pin!(app.call(&request)));
@@ -95,7 +95,7 @@ async fn the_first_of_many_with_answers_is_left_to_the_driver() {
 /// The driver sends the bytes that the socket does not take at once. They stay in order, also with those of a later
 /// call.
 #[fc_test::test]
-async fn a_request_that_the_socket_takes_in_part_arrives_whole() {
+async fn partially_written_request_arrives_whole() {
     let (app, robot) = answering(16);
     for round in 0..20 {
         let (one, two) = (echo(&"a".repeat(round * 37)), echo(&"b".repeat(round)));

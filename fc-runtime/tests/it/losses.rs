@@ -55,7 +55,7 @@ async fn no_robot() {
 }
 
 #[fc_test::test]
-async fn what_only_reads_is_sent_again_and_the_rest_is_lost() {
+async fn read_is_sent_again_after_a_loss_others_are_not() {
     let (listener, config) = listen().await;
     let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
         accept(&listener).await
@@ -127,7 +127,7 @@ async fn attempts_are_those_that_fail() {
 }
 
 #[fc_test::test]
-async fn a_report_repeated_after_the_loss_is_not_handed_on_again() {
+async fn report_repeated_after_a_loss_arrives_once() {
     let (listener, config) = listen().await;
     let (app, mut robot) = tokio::join!(Connection::<Toy>::connect(config), async {
         accept(&listener).await
@@ -157,7 +157,7 @@ async fn a_report_repeated_after_the_loss_is_not_handed_on_again() {
 }
 
 #[fc_test::test]
-async fn what_was_not_sent_before_the_loss_is_not_sent_after_it() {
+async fn unsent_call_is_not_sent_after_a_loss() {
     let (listener, config) = listen().await;
     let (app, robot) = tokio::join!(Connection::<Toy>::connect(config), async {
         accept(&listener).await
@@ -204,7 +204,7 @@ fn large() -> Echo {
 }
 
 #[fc_test::test]
-async fn calls_made_while_there_is_no_connection_wait_for_one() {
+async fn calls_wait_for_a_connection() {
     let (listener, config) = listen().await;
     let config = config.reconnect(Backoff {
         attempts: None,
@@ -228,7 +228,7 @@ async fn calls_made_while_there_is_no_connection_wait_for_one() {
 
 /// An app that compares the count with an older one must not take the first connection for a second.
 #[fc_test::test]
-async fn a_connection_counts_from_the_moment_that_it_is_there() {
+async fn connection_is_counted_once_established() {
     let (near, _far) = tokio::io::duplex(64);
     let app = Connection::<Toy>::over(near, ClientConfig::new());
     assert_eq!(app.state().connects(), 1);

@@ -92,7 +92,7 @@ fn log_in(word: &str) -> LogIn {
 }
 
 #[fc_test::test]
-async fn what_is_in_bodies_is_never_logged() {
+async fn bodies_are_never_logged() {
     let _alone = ALONE.lock().await;
     let notes = Notes::default();
     let _guard = tracing::subscriber::set_default(notes.clone());
@@ -272,7 +272,7 @@ async fn counters_agree_on_both_sides() {
 
 /// The promise about `{:?}`: a message shows its values except sensitive ones.
 #[fc_test::test]
-fn a_message_shows_all_but_what_is_sensitive() {
+fn debug_output_hides_sensitive_fields() {
     let shown = format!("{:?}", log_in(SECRET));
     assert!(
         shown.contains("LogIn") && !shown.contains(SECRET),

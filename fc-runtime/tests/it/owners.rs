@@ -59,7 +59,7 @@ async fn only(robot: &Robot, connections: &mut [&mut App]) {
 }
 
 #[fc_test::test]
-async fn of_two_apps_at_one_address_neither_gets_what_is_for_the_other() {
+async fn apps_at_one_address_get_only_their_streams() {
     let robot = Robot::start(loopback(), service).await;
     let first = app(&robot, 1);
     let mut first_data = data(&robot, 1);
@@ -81,7 +81,7 @@ async fn of_two_apps_at_one_address_neither_gets_what_is_for_the_other() {
 }
 
 #[fc_test::test]
-async fn what_an_app_has_left_behind_gets_nothing_that_is_for_the_next() {
+async fn leftover_data_connection_gets_nothing_of_the_next() {
     let robot = Robot::start(loopback(), service).await;
     let first = app(&robot, 1);
     let mut left_behind = data(&robot, 1);
@@ -97,7 +97,7 @@ async fn what_an_app_has_left_behind_gets_nothing_that_is_for_the_next() {
 }
 
 #[fc_test::test]
-async fn an_app_alone_at_its_address_gets_its_own_on_all_its_connections() {
+async fn lone_app_gets_streams_on_all_its_connections() {
     let robot = Robot::start(loopback(), service).await;
     // The order does not matter while the app is alone.
     let mut early = data(&robot, 1);
@@ -138,7 +138,7 @@ async fn a_frame_names_the_connection_to_answer_on() {
 
 /// Over sockets, where the robot accepts waiting connections in any order.
 #[fc_test::test]
-async fn over_sockets_a_data_connection_does_not_overtake_its_command_connection() {
+async fn data_connection_follows_its_command_connection() {
     for _ in 0..20 {
         let robot = Robot::start(loopback(), service).await;
         let first = Connection::<Toy>::connect(robot.config.clone())

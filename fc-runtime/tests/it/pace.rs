@@ -59,7 +59,7 @@ async fn handled(app: &mut Raw<DuplexStream>, bad: &[u8], count: usize, answered
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_frame_that_cannot_be_used_costs_a_millisecond_after_the_first_256() {
+async fn useless_frame_costs_a_millisecond_after_256() {
     let robot = Robot::start(loopback(), service).await;
     let other = robot.pipe(ClientConfig::new());
     for (what, bad, answered) in unusable() {
@@ -85,7 +85,7 @@ async fn a_frame_that_cannot_be_used_costs_a_millisecond_after_the_first_256() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn what_can_be_used_is_free() {
+async fn useful_frames_cost_no_time() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.pipe(ClientConfig::new());
     let start = Instant::now();
@@ -115,7 +115,7 @@ async fn the_data_port_keeps_the_same_pace() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn what_was_not_sent_but_decompressed_is_paid_for_by_waiting() {
+async fn inflated_bytes_cost_time() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     let gzip = Gzip {

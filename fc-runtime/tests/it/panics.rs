@@ -95,7 +95,7 @@ fn echo() -> Echo {
 }
 
 #[fc_test::test]
-async fn a_panic_is_answered_and_the_neighbours_on_the_connection_live() {
+async fn panic_is_answered_and_other_calls_continue() {
     let _alone = alone();
     for place in PLACES {
         let permits = Arc::new(Semaphore::new(0));
@@ -247,7 +247,7 @@ fn is_error(line: &str) -> bool {
 }
 
 #[fc_test::test]
-async fn a_panic_is_logged_with_name_and_id_and_without_what_it_says() {
+async fn panic_is_logged_without_its_message() {
     let log = Log::listen(Level::TRACE);
     for place in PLACES {
         let permits = Arc::new(Semaphore::new(0));

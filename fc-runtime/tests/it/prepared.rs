@@ -52,7 +52,7 @@ async fn many_get_it_as_if_it_had_been_made_for_each() {
 }
 
 #[fc_test::test]
-async fn the_envelope_is_of_the_moment_and_stands_behind_the_response() {
+async fn prepared_response_gets_a_current_envelope() {
     let robot = robot(loopback(), "x".to_owned()).await;
     let mut app = robot.raw();
     for (code, body, before) in [
@@ -86,7 +86,7 @@ async fn a_refusal_is_a_refusal() {
 }
 
 #[fc_test::test]
-async fn it_is_sent_plain_where_other_answers_are_compressed() {
+async fn prepared_response_is_sent_plain() {
     let gzip = Gzip {
         from_bytes: 1,
         level: 1,
@@ -118,7 +118,7 @@ async fn one_that_fits_into_no_frame_is_refused() {
 }
 
 #[fc_test::test]
-fn what_breaks_the_spec_is_not_prepared() {
+fn invalid_response_is_not_prepared() {
     let error = PreparedResponse::<_, Md5>::new(&Go { metres: 101 }).unwrap_err();
     assert_eq!(error.name(), "out_of_range");
 }

@@ -31,7 +31,7 @@ async fn is_empty(reports: &mut RawReports<Toy>) -> bool {
 
 /// A report that comes every second: neither another kind nor a repetition counts as the last one.
 #[fc_test::test(start_paused = true)]
-async fn a_report_that_comes_too_long_after_the_last_is_counted_and_taken() {
+async fn late_report_is_counted_and_delivered() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
     let beat = BEAT.code.unwrap();
@@ -144,7 +144,7 @@ async fn a_report_for_one_app_reaches_it_alone() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_report_that_comes_again_is_acknowledged_again_and_handed_on_once() {
+async fn repeated_report_is_acknowledged_and_delivered_once() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
     let id = report(Moved::CODE, 9);
@@ -212,7 +212,7 @@ async fn a_burst_is_acknowledged_to_its_last() {
 /// Without a receiver, reports are not acknowledged: the robot must not be told that an undeliverable report has
 /// arrived.
 #[fc_test::test(start_paused = true)]
-async fn what_nobody_takes_is_not_acknowledged() {
+async fn report_without_a_receiver_is_not_acknowledged() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.pipe(ClientConfig::new());
     for refused in [1, 2] {
@@ -233,7 +233,7 @@ async fn what_nobody_takes_is_not_acknowledged() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn each_receiver_gets_every_report_from_its_beginning_on() {
+async fn receiver_gets_every_report_since_its_start() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut one = app.reports();
     let mut send = async |id| {
@@ -308,7 +308,7 @@ async fn reports_end_with_the_connection() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn an_app_that_does_not_acknowledge_gets_the_report_again() {
+async fn unacknowledged_report_is_repeated() {
     let robot = Robot::start(loopback(), service).await;
     let mut app = robot.raw();
     let start = Instant::now();
@@ -418,7 +418,7 @@ async fn a_slow_app_loses_its_own_oldest_reports() {
 }
 
 #[fc_test::test]
-async fn what_the_app_cannot_read_is_refused_and_never_acknowledged() {
+async fn unreadable_report_is_refused() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
     let mut reports = app.reports();
@@ -450,7 +450,7 @@ async fn what_the_app_cannot_read_is_refused_and_never_acknowledged() {
 }
 
 #[fc_test::test]
-async fn what_is_no_report_is_refused() {
+async fn invalid_report_is_refused() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
     let bodies = ["no", "[]", r#"{"at":"noon"}"#, "{}", r#"{"metres":1}"#];
@@ -500,7 +500,7 @@ async fn a_report_that_is_acknowledged_reads() {
 
 /// Found by the schedules of `network`: the receivers had seen the end already.
 #[fc_test::test]
-async fn what_comes_after_the_end_is_not_acknowledged() {
+async fn report_after_close_is_not_acknowledged() {
     let (app, mut robot) = app_of_raw(ClientConfig::new());
     let mut reports = app.reports();
     tokio::task::yield_now().await;

@@ -253,7 +253,7 @@ async fn streams_unpolled_over_sockets() {
 }
 
 #[fc_test::test]
-async fn what_is_being_handled_is_answered() {
+async fn shutdown_answers_running_calls() {
     let gate: &'static Semaphore = Box::leak(Box::new(Semaphore::new(0)));
     let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
         request.handle(move |_, _: Go| async {
@@ -293,7 +293,7 @@ async fn what_is_being_handled_is_answered() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn what_takes_longer_is_cut_off() {
+async fn shutdown_ends_at_its_limit() {
     let robot = stubborn().await;
     let mut scene = Scene::default();
     handler(&robot, &mut scene).await;
@@ -319,7 +319,7 @@ async fn the_earliest_of_several_ends_counts() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn it_ends_also_when_nobody_waits_for_it() {
+async fn shutdown_ends_without_being_awaited() {
     let robot = stubborn().await;
     let mut scene = Scene::default();
     handler(&robot, &mut scene).await;
@@ -332,7 +332,7 @@ async fn it_ends_also_when_nobody_waits_for_it() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_server_that_nobody_runs_ends_too() {
+async fn server_that_never_ran_shuts_down() {
     for polled in [false, true] {
         let server = Server::<Toy>::bind(loopback(), |request: Request<'_, Toy>| {
             request.handle(|_, _: Go| pending())
@@ -368,7 +368,7 @@ async fn a_server_that_never_ran_is_over_when_it_is_dropped() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn a_handler_may_end_the_server_and_push_while_it_ends() {
+async fn handler_may_shut_down_and_push() {
     let known: Arc<OnceLock<ServerHandle<Toy>>> = Arc::default();
     let own = Arc::clone(&known);
     let robot = Robot::start(loopback(), move |request: Request<'_, Toy>| {
@@ -391,7 +391,7 @@ async fn a_handler_may_end_the_server_and_push_while_it_ends() {
 
 /// Connections, calls and reports that begin while a server ends on other threads all end, too.
 #[fc_test::test(flavor = "multi_thread", worker_threads = 4)]
-async fn what_begins_meanwhile_ends() {
+async fn connection_during_shutdown_is_closed() {
     for round in 0..200 {
         let config = loopback().limits(Limits {
             connections: 1000,

@@ -93,7 +93,7 @@ async fn a_frame_that_goes_on_is_waited_for() {
 
 /// A wrong length swallows the following responses, which must not count as progress.
 #[fc_test::test(start_paused = true)]
-async fn answers_that_a_wrong_length_swallows_are_no_progress() {
+async fn swallowed_responses_are_no_progress() {
     let config = ClientConfig::new().call_timeout(Duration::from_secs(1));
     let (app, mut robot) = app_of_raw(config);
     let claim = frame(command(1, 1), &vec![b'x'; 4_000_000]);
@@ -199,7 +199,7 @@ async fn lost(bytes: &[u8]) -> CallError {
 
 /// A read that was lost and found no other connection is lost, and one that never left is not sent.
 #[fc_test::test(start_paused = true)]
-async fn without_a_connection_the_error_says_so_and_why() {
+async fn error_without_a_connection_has_the_reason() {
     let mut robots = 1;
     let (pipes, mut dialled) = mpsc::channel(1);
     let dial = move || {
@@ -256,7 +256,7 @@ async fn a_data_connection_stalls_too() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn an_app_that_looks_elsewhere_in_the_middle_of_a_frame_does_not_lose_it() {
+async fn interrupted_read_keeps_the_partial_frame() {
     let id = FrameId {
         kind: Toy::STREAM,
         ..command(1, 1)

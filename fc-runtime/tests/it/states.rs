@@ -98,7 +98,7 @@ async fn each_state_is_told_once_and_the_last_is_the_end() {
 /// A robot that accepts connections and closes them is tried less and less often; one that has been
 /// heard, at once.
 #[fc_test::test(start_paused = true)]
-async fn a_robot_that_only_accepts_is_waited_for_longer_and_longer() {
+async fn waits_grow_while_a_robot_only_accepts() {
     let _alone = alone();
     let (dial, mut dialled) = attempts("++++++++");
     let backoff = Backoff {
@@ -138,7 +138,7 @@ async fn a_robot_that_only_accepts_is_waited_for_longer_and_longer() {
 
 /// An app that was busy while the connection was lost and made again has to notice it.
 #[fc_test::test(start_paused = true)]
-async fn a_connection_that_was_made_again_meanwhile_is_noticed() {
+async fn reconnection_between_looks_is_noticed() {
     let _alone = alone();
     let (dial, mut dialled) = attempts("+++");
     let config = ClientConfig::new();
@@ -246,7 +246,7 @@ async fn a_call_says_why_there_was_no_first_connection() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn an_attempt_that_takes_too_long_is_given_up_for_the_next() {
+async fn slow_attempt_is_replaced_by_the_next() {
     let _alone = alone();
     let (app, mut dialled) = lazily("?+");
     let start = Instant::now();
@@ -280,7 +280,7 @@ async fn the_first_connection_is_given_up_like_another() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn the_way_to_the_first_connection_is_logged_and_does_not_flood() {
+async fn connection_attempts_are_logged_with_a_limit() {
     let log = Log::listen(Level::INFO);
     let (app, mut dialled) = lazily("xxxx?xx+");
     let _robot = dialled.recv().await.unwrap();

@@ -86,7 +86,7 @@ async fn the_app_behind_a_command_is_found_by_its_host() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn an_app_that_does_not_read_slows_down_or_loses_its_own_frames() {
+async fn slow_reader_delays_or_loses_only_its_frames() {
     let robot = Robot::start(loopback(), service).await;
     let _slow = robot.raw_data();
     let bytes = picture(100_000);
@@ -155,7 +155,7 @@ async fn a_busy_robot_does_not_read_on() {
 }
 
 #[fc_test::test]
-async fn frames_nobody_takes_are_dropped_and_counted() {
+async fn untaken_frames_are_dropped_and_counted() {
     let robot = Robot::start(loopback(), service).await;
     let mut data = robot.raw_data();
     for id in 0..10 {

@@ -93,7 +93,7 @@ async fn the_oldest_makes_way() {
 /// Frames of other streams do not delay subscribers and are counted. Without subscribers the robot waits for the
 /// receiver.
 #[fc_test::test]
-async fn what_nobody_asks_for_keeps_nobody_waiting() {
+async fn unsubscribed_frames_delay_no_other() {
     let robot = Robot::start(loopback(), service).await;
     let data = connect(&robot).await;
     for id in 1..=3 {

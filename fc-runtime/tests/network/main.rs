@@ -342,7 +342,7 @@ fn within() -> Duration {
 }
 
 #[fc_test::test(within = within())]
-fn calls_end_once_reports_are_handed_on_once_and_nothing_moves_twice() {
+fn calls_end_once_and_nothing_moves_twice() {
     if let Some(seed) = number("CHAOS_SEED") {
         let mut tally = Tally::new();
         for line in run(seed, &mut tally) {

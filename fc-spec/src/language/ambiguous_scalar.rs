@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_other_readers_make_of_it() {
+    fn readings_of_other_parsers_are_known() {
         for (text, expected) in [
             ("on", Some("a boolean")),
             ("TRUE", Some("a boolean")),

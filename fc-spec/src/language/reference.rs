@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_is_said_in_both_languages_and_leads_somewhere() {
+    fn reference_is_bilingual_and_links_resolve() {
         let parts = reference();
         let is_known = |id: &str| parts.iter().any(|part| part.id == id);
         let said = |text: &Text| !text.zh.is_ascii() && text.zh != text.en;

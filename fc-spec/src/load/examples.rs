@@ -66,7 +66,7 @@ fn every_example_of_a_part_is_one_of_it() {
 }
 
 #[test]
-fn every_key_has_an_example_that_may_stand_there() {
+fn each_key_has_a_valid_example() {
     let mut wrong = Vec::new();
     each_key(|name, kind, key| match &key.example {
         Some(example) => wrong.extend(check(&name, kind, example)),
@@ -77,7 +77,7 @@ fn every_key_has_an_example_that_may_stand_there() {
 }
 
 #[test]
-fn every_default_may_stand_there_and_only_where_nothing_has_to() {
+fn defaults_are_valid_and_of_optional_keys() {
     let mut wrong = Vec::new();
     each_key(|name, kind, key| {
         // The default `stated` is never written.

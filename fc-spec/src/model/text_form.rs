@@ -243,7 +243,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn types_are_read_as_they_are_written() {
+    fn types_survive_writing_and_reading() {
         let array = |item| Type::Array(Box::new(item));
         for (text, expected) in [
             ("u8", Some(Type::Int(IntKind::U8))),
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn widths_are_read_as_they_are_written() {
+    fn widths_survive_writing_and_reading() {
         for (text, expected) in [
             ("u8", Some(HeaderType::U8)),
             ("bytes(16)", Some(HeaderType::Bytes(16))),
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn subjects_are_read_as_they_are_written() {
+    fn subjects_survive_writing_and_reading() {
         for text in [
             "protocol",
             "frame",

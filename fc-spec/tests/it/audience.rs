@@ -140,7 +140,7 @@ fn fields(model: &Model, ty: &str) -> Vec<String> {
 }
 
 #[test]
-fn what_is_for_others_is_gone_with_all_that_only_it_uses() {
+fn projection_removes_other_parts_and_their_types() {
     let model = part("product_app");
     let operations: Vec<&str> = model.operations.iter().map(|it| it.name.as_str()).collect();
     assert_eq!(
@@ -187,7 +187,7 @@ fn what_is_for_others_is_gone_with_all_that_only_it_uses() {
 }
 
 #[test]
-fn nothing_that_is_left_names_what_is_gone() {
+fn projection_leaves_no_dangling_name() {
     let model = part("product_app");
     let ask = model.operation("ask").expect("it is for all");
     let keys = |path: &[String]| path.join(".");

@@ -38,7 +38,7 @@ fn text(span: Span) -> &'static str {
 }
 
 #[test]
-fn a_comment_is_about_what_it_stands_above_or_behind() {
+fn comments_belong_to_the_next_or_same_line() {
     let mut faults = Faults::new();
     let tree = parse(FileId(0), TEXT, &mut faults).expect("a tree");
     assert_eq!(faults.len(), 0);

@@ -348,7 +348,7 @@ fn blocks(text: &str, kind: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_bad_example_raises_its_code_and_the_good_one_does_not() {
+fn bad_example_has_its_code_and_good_one_none() {
     let mut silent = Vec::new();
     for code in FaultCode::ALL {
         let code_name = code.as_str();

@@ -221,7 +221,7 @@ fn every_fixture_has_exactly_the_faults_it_expects() {
 }
 
 #[test]
-fn every_fault_is_said_in_both_languages() {
+fn each_error_is_in_both_languages() {
     let objections: Vec<_> = fixtures()
         .iter()
         .flat_map(|fixture| {
@@ -319,7 +319,7 @@ const SAID_ALONE: [(&str, &str); 16] = [
 
 /// What the reference of the language says of faults is what there is.
 #[test]
-fn faults_lie_at_the_keys_that_say_so() {
+fn errors_lie_at_the_keys_that_declare_them() {
     let mut raised = declared_faults::Raised::new();
     let mut wrong = Vec::new();
     for fixture in fixtures() {

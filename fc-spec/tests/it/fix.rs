@@ -102,7 +102,7 @@ fn lines_that_changed(old: &Sources, new: &Sources) -> BTreeSet<(String, usize)>
 }
 
 #[test]
-fn certain_fixes_add_no_fault_and_change_no_other_line() {
+fn certain_fixes_change_only_their_lines() {
     let (mut fixed, mut with_certain) = (0, 0);
     for (title, sources) in slips().into_iter().chain(fixtures()) {
         let before = check(&sources);
@@ -128,7 +128,7 @@ fn certain_fixes_add_no_fault_and_change_no_other_line() {
 }
 
 #[test]
-fn what_hides_behind_a_fault_of_the_yaml_is_mended_as_well() {
+fn errors_behind_a_yaml_error_are_fixed_too() {
     let commands = good("commands/demo.yaml")
         .replace("    effect: read\n", "    effect：raed\n    \t\n")
         .replace("since: 2023-05", "since: 2023/5");

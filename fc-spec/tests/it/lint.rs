@@ -229,7 +229,7 @@ fn rules_of_the_project_find_what_they_say() {
 }
 
 #[test]
-fn what_is_wrong_with_settings_is_said_with_its_place() {
+fn invalid_settings_are_reported_with_their_place() {
     let path = directory().join("settings.txt");
     let mut actual = String::new();
     let text = std::fs::read_to_string(&path).expect("settings");
@@ -254,7 +254,7 @@ fn what_is_wrong_with_settings_is_said_with_its_place() {
 }
 
 #[test]
-fn levels_go_from_the_rule_to_what_contains_its_category() {
+fn levels_apply_from_rule_to_category() {
     let rule = |name: &str| Rule::parse(name).expect("a rule");
     let level = |yaml: &str, name: &str| {
         let (settings, wrong) = set(yaml);

@@ -50,7 +50,7 @@ fn types_are_made_in_the_order_written() {
 }
 
 #[test]
-fn what_is_left_out_is_filled_in() {
+fn omitted_values_get_their_defaults() {
     let model = good_spec::model();
     let command = model.operation("get_thing").expect("a command");
     let report = model.operation("thing_moved").expect("a report");
@@ -141,7 +141,7 @@ fn header_fields_know_their_place() {
 
 /// Order of the files and of the lines in them.
 #[test]
-fn answers_stand_in_the_order_written() {
+fn answers_keep_their_order() {
     let model = good_spec::model();
     let ids: Vec<_> = model
         .answers
@@ -174,7 +174,7 @@ fn an_error_has_the_cause_that_its_operation_gives() {
 }
 
 #[test]
-fn an_inline_type_may_have_a_name_of_its_own() {
+fn inline_type_may_have_a_name() {
     let texts = good_spec::FILES.map(|path| {
         let text = good_spec::file(path);
         let text = text.replace(

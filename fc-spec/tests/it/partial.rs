@@ -41,7 +41,7 @@ fn field(owner: &str, name: &str) -> DefId {
 }
 
 #[test]
-fn what_a_fault_does_not_touch_is_read() {
+fn parts_without_errors_are_read() {
     let (sources, loaded, errors) = loaded(&[
         ("color: Color\n", "color: Colour\n"),
         ("max: 100, example: 3", "example: 3, maximum: 100"),
@@ -78,7 +78,7 @@ fn what_a_fault_does_not_touch_is_read() {
 }
 
 #[test]
-fn every_reference_of_what_is_read_is_linked() {
+fn references_of_readable_parts_resolve() {
     let (_, loaded, _) = loaded(&[
         ("enum: u8", "enum: u9"),
         ("tags: { type: [string]", "tags: { type: [Sise]"),

@@ -115,7 +115,7 @@ fn every_definition_is_used() {
 
 /// An editor offers defaults and examples, so each is to be taken where it stands.
 #[test]
-fn what_is_offered_for_a_key_may_stand_there() {
+fn offered_values_are_valid() {
     let root: Value = serde_json::from_str(&schema(Languages::All)).expect("the schema is JSON");
     let mut offers = 0;
     for (name, definition) in root["$defs"].as_object().expect("definitions") {

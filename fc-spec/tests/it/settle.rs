@@ -97,7 +97,7 @@ fn patched(before: &str, diff: &str) -> String {
 }
 
 #[test]
-fn an_answer_changes_the_lines_it_is_about_and_no_others() {
+fn answer_changes_only_its_lines() {
     let asked = good_spec::read("settle/asked.yaml");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/settle/answers.txt");
     let before = sources(&asked);
@@ -159,7 +159,7 @@ fn the_lines_to_edit_are_those_that_an_answer_changes() {
 }
 
 #[test]
-fn what_is_settled_stays_settled() {
+fn settled_question_stays_settled() {
     let before = sources(&good_spec::read("settle/asked.yaml"));
     let said = say("C013", vec![("code".to_owned(), "0x0109".to_owned())]);
     let settled = settle(&before, Languages::All, &said).expect("it can be settled");
@@ -171,7 +171,7 @@ fn what_is_settled_stays_settled() {
 }
 
 #[test]
-fn a_file_with_the_line_ends_of_windows_keeps_them_elsewhere() {
+fn answer_keeps_windows_line_ends() {
     let asked = good_spec::read("settle/asked.yaml").replace('\n', "\r\n");
     let said = say("C013", vec![("code".to_owned(), "0x0109".to_owned())]);
     let settled = settle(&sources(&asked), Languages::All, &said).expect("it can be settled");

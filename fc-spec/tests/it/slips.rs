@@ -162,7 +162,7 @@ fn every_slip_is_named_in_both_languages() {
 }
 
 #[test]
-fn every_slip_lies_at_a_key_that_says_so() {
+fn slips_lie_at_the_keys_that_declare_them() {
     let mut wrong = Vec::new();
     each_file(|_, text| {
         for slip in Slip::all(text) {

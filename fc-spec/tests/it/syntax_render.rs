@@ -118,7 +118,7 @@ fn a_fault_in_chinese() {
 }
 
 #[test]
-fn of_a_long_line_only_the_place_is_named() {
+fn long_line_shows_its_place_only() {
     let source = format!("甲: {}\n", "x".repeat(5000));
     let span = Span::new(FILE, 5, 5005);
     let fault = Diagnostic::error(FaultCode::BadYaml, span, text!("不对", "wrong"))

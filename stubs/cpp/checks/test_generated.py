@@ -96,7 +96,7 @@ class Package(unittest.TestCase):
         ok, text = run(program, *arguments)
         self.assertTrue(ok, text)
 
-    def test_names_that_mean_something_else_and_prose_that_a_compiler_misreads(self) -> None:
+    def test_difficult_names_and_prose_compile(self) -> None:
         project = Project("odd")
         self.addCleanup(project.remove)
         shutil.copytree(CHECKS / "course", project.folder / "spec/commands", dirs_exist_ok=True)
@@ -115,7 +115,7 @@ class Package(unittest.TestCase):
         self.assertFalse(ok)
         self.assertIn('since 2021-01: Not "used" \\ any more. Use `float` instead.', text.replace('\\"', '"'))
 
-    def test_the_golden_messages_and_the_samples_of_two_other_protocols(self) -> None:
+    def test_other_protocols_pass_messages_and_samples(self) -> None:
         for name, least in (("meter", 300), ("beacon", 30)):
             with self.subTest(name):
                 project = Project(name)
@@ -218,7 +218,7 @@ class Lockstep(unittest.TestCase):
                 self.assertIn(said, text)
                 self.project = project
 
-    def test_an_added_command_is_there_and_a_complete_robot_lacks_it(self) -> None:
+    def test_added_command_exists_and_robot_must_implement_it(self) -> None:
         added = (
             "commands:\n  count_pulses:\n    code: 0x1009\n    zh: 数脉冲\n    en: Count the pulses\n"
             "    effect: read\n    source: { sections: [] }\n"

@@ -113,7 +113,7 @@ class OtherSpecs(unittest.TestCase):
         with Project(*ODD) as project:
             self.holds(project)
 
-    def test_what_cannot_be_said_in_csharp_changes_nothing(self):
+    def test_names_impossible_in_csharp_change_nothing(self):
         with Project(*ODD) as project:
             added = project.folder / "spec/commands/added.yaml"
             text = (HERE / "tests/added.yaml").read_text(encoding="utf-8")
@@ -134,7 +134,7 @@ class OtherSpecs(unittest.TestCase):
 
 
 class Judge(unittest.TestCase):
-    def test_it_says_of_each_golden_frame_what_the_golden_frames_say(self):
+    def test_golden_frames_are_judged_as_recorded(self):
         asked = []
         for path in sorted((ROOT / "fc-generated/vectors").glob("*.json")):
             vectors = json.loads(path.read_text(encoding="utf-8"))
@@ -175,7 +175,7 @@ class Readme(unittest.TestCase):
 
 
 class Broken(unittest.TestCase):
-    def test_the_golden_frames_notice_what_is_broken(self):
+    def test_golden_frames_notice_defects(self):
         with Project(ROOT / "spec") as project:
             here = project.folder / "stubs/example-csharp"
             shutil.copytree(HERE, here, ignore=shutil.ignore_patterns("build", "generated"))

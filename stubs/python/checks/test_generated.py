@@ -176,7 +176,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
         self.assertGreater(len(commands), 70)
         await server.shutdown(0)
 
-    def test_what_is_said_is_what_the_spec_says(self) -> None:
+    def test_generated_code_matches_the_spec(self) -> None:
         odd = self.project.module("odd_line")
         # The type of each reserved name, with its name in Python.
         names = {field: field for field in ("dataclass", "annotations", "going")}
@@ -213,7 +213,7 @@ class Course(unittest.IsolatedAsyncioTestCase):
 class Names(unittest.TestCase):
     """Attributes of the runtime's classes."""
 
-    def test_no_command_and_no_field_takes_a_name_of_the_runtime(self) -> None:
+    def test_names_avoid_those_of_the_runtime(self) -> None:
         bases = (rt.Client, rt.SyncClient, rt.Robot, rt.ExampleRobot, rt.Reporter, rt.Streamer)
         methods = {name for base in bases for name in public(base)}
         # Their constructors set these, so the classes do not have them.
@@ -267,7 +267,7 @@ class Vectors(unittest.TestCase):
 class Ids(unittest.TestCase):
     """Ids of entities as separate types."""
 
-    def test_they_travel_as_what_they_hold_and_none_is_taken_for_another(self) -> None:
+    def test_id_types_travel_as_values_and_stay_distinct(self) -> None:
         project = Project(options=", newtypes: true")
         self.addCleanup(project.remove)
         shutil.copytree(ROOT / "fc-generated/tests/meter/spec", project.folder / "spec")
@@ -328,7 +328,7 @@ class Lockstep(unittest.TestCase):
                 self.assertIn(said, text)
                 self.project = project
 
-    def test_an_added_command_is_there_and_a_complete_robot_lacks_it(self) -> None:
+    def test_added_command_exists_and_robot_must_implement_it(self) -> None:
         path = self.project.folder / "spec/commands/power.yaml"
         added = (
             "commands:\n  count_pulses:\n    code: 0x1009\n    zh: 数脉冲\n    en: Count the pulses\n"

@@ -64,7 +64,7 @@ class Blocking(unittest.TestCase):
 
             self.assertEqual(list(pool.map(ask, range(200))), list(range(200)))
 
-    def test_after_its_end_nothing_is_sent_and_who_waits_is_told(self) -> None:
+    def test_closed_client_sends_nothing_and_ends_waits(self) -> None:
         client = sync.Client(self.config)
         with ThreadPoolExecutor(3) as pool:
             calling = pool.submit(client.dock, DockRequest.example())
@@ -83,7 +83,7 @@ class Blocking(unittest.TestCase):
         client.close()
         self.assertIsInstance(client.state, rt.Closed)
 
-    def test_without_a_robot_it_says_so_and_leaves_no_thread(self) -> None:
+    def test_missing_robot_is_an_error_and_leaves_no_thread(self) -> None:
         before = threading.active_count()
         with self.assertRaises(rt.ConnectError):
             sync.Client.connect(rt.ClientConfig(host="127.0.0.1", command_port=1))

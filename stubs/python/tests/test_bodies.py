@@ -70,12 +70,12 @@ class Bodies(unittest.TestCase):
                 OfI32.from_json(text)
             self.assertEqual(caught.exception.name, "too_deep")
 
-    def test_what_is_no_json_comes_before_depth(self) -> None:
+    def test_invalid_json_is_reported_before_depth(self) -> None:
         with self.assertRaises(rt.BodyError) as caught:
             OfI32.from_json(b'{"x":01,"y":' + b"[" * 100_000)
         self.assertEqual(caught.exception.name, "bad_json")
 
-    def test_what_is_no_number_in_front_of_the_bracket_comes_before_depth(self) -> None:
+    def test_invalid_number_is_reported_before_depth(self) -> None:
         for start in (b"-", b"1", b"0"):
             with self.assertRaises(rt.BodyError) as caught:
                 OfI32.from_json(b'{"x":' + b"[" * 63 + start + b"[" * 100)
@@ -89,7 +89,7 @@ class Bodies(unittest.TestCase):
                 self.assertEqual(OfI32.from_json(text).to_json(), kept)
                 self.assertEqual(of_one_key(rt.Json).from_json(f'{{"value":{text}}}').to_json(), f'{{"value":{kept}}}')
 
-    def test_what_is_sent_is_checked(self) -> None:
+    def test_sent_bodies_are_checked(self) -> None:
         for value in (1 << 31, True, "1"):
             message = OfI32(value=value)  # type: ignore[arg-type]
             with self.assertRaises(rt.BodyError):

@@ -56,7 +56,7 @@ class Data(AsyncCase):
         self.assertEqual(server.counters.stream_frames_out, 3)
         await server.shutdown(0)
 
-    async def test_a_slow_subscriber_misses_the_oldest_and_others_wait_for_nobody(self) -> None:
+    async def test_slow_subscriber_misses_the_oldest_alone(self) -> None:
         server = await self.serve()
         client = await self.client()
         data = client.data()
@@ -74,7 +74,7 @@ class Data(AsyncCase):
         self.assertEqual((await data.recv()).id, 1)
         await server.shutdown(0)
 
-    async def test_a_loss_is_told_once_and_the_next_connection_goes_on(self) -> None:
+    async def test_loss_is_told_once_and_next_connection_continues(self) -> None:
         server = await self.serve()
         client = await self.client(reconnect=rt.Backoff(first=0.01, longest=0.01))
         data = client.data()
@@ -189,7 +189,7 @@ class Data(AsyncCase):
         self.assertEqual((await data.recv()).id, 7)
         await server.shutdown(0)
 
-    async def test_where_several_apps_share_an_address_nothing_is_sent(self) -> None:
+    async def test_shared_address_receives_no_stream(self) -> None:
         server = await self.serve()
         first = await self.client()
         second = await self.client()
@@ -210,7 +210,7 @@ class Data(AsyncCase):
         second.close()
         await server.shutdown(0)
 
-    async def test_what_is_no_stream_is_refused_and_told(self) -> None:
+    async def test_invalid_stream_is_refused_and_told(self) -> None:
         server = await self.serve()
         reader, writer = await asyncio.open_connection("127.0.0.1", self.ports[1])
         encoder, decoder = rt.Encoder(sample.SAMPLE), rt.Decoder(sample.SAMPLE)

@@ -70,7 +70,7 @@ class Following(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_a_lost_connection_is_told_and_the_process_goes_on_with_the_next(self) -> None:
+    async def test_following_continues_after_a_lost_connection(self) -> None:
         listener, client, robot = await self.meet()
         following = await self.begun(client, robot)
         await self.report(robot, 1, b'{"phase":1,"job":7}')
@@ -83,7 +83,7 @@ class Following(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_a_failure_ends_it_and_what_is_out_of_order_is_counted(self) -> None:
+    async def test_failure_ends_following_and_disorder_is_counted(self) -> None:
         listener, client, robot = await self.meet()
         following = await self.begun(client, robot)
         for number, phase in enumerate((1, 0, 77, 9)):
@@ -96,7 +96,7 @@ class Following(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_what_has_been_missed_is_told_in_its_place(self) -> None:
+    async def test_missed_reports_are_told_in_order(self) -> None:
         limits = replace(sample.SAMPLE.defaults.limits, queued_reports=2)
         listener, client, robot = await self.meet(limits=limits)
         following = await self.begun(client, robot)
@@ -112,7 +112,7 @@ class Following(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_what_another_call_has_set_off_does_not_come(self) -> None:
+    async def test_reports_of_another_call_are_not_delivered(self) -> None:
         listener, client, robot = await self.meet()
         first = await self.begun(client, robot, 7)
         second = await self.begun(client, robot, 8)
@@ -137,7 +137,7 @@ class Following(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_a_call_that_is_refused_or_cancelled_is_not_followed(self) -> None:
+    async def test_refused_or_cancelled_call_is_not_followed(self) -> None:
         listener, client, robot = await self.meet()
         calling = asyncio.ensure_future(_follow(client))
         (request,) = await robot.frames(1)

@@ -124,7 +124,7 @@ class Handlers(unittest.TestCase):
         return answer.data, log.records, errors, server.counters
 
     @clocked
-    async def test_class_and_innermost_own_line_are_logged_and_the_hook_is_told(self) -> None:
+    async def test_error_class_and_line_are_logged_and_hooked(self) -> None:
         for handler, name, place, text in FAILURES:
             with self.subTest(handler=handler):
                 answer, lines, errors, counters = await self.failed(handler)

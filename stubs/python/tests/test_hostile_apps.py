@@ -34,7 +34,7 @@ class Hostile(unittest.TestCase):
         self.assertIn(b"1001", answer.data)
 
     @clocked
-    async def test_a_wrong_head_or_an_impossible_length_closes_its_own_connection(self) -> None:
+    async def test_wrong_head_or_length_closes_only_its_connection(self) -> None:
         server = await serve(Hangs())
         quiet = await Raw.connect(server.command_address)
         for garbage in (b"GET / HTTP/1.1\r\n\r\n", b"\xfc\xaa" + bytes(33), b"\xfc\xaa" + b"\xff" * 33):
@@ -46,7 +46,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_a_frame_with_a_credible_length_is_answered_and_the_connection_lives(self) -> None:
+    async def test_invalid_frame_of_known_length_is_answered(self) -> None:
         server = await serve(Hangs())
         app = await Raw.connect(server.command_address)
         good = app.frame(GET, b'{"a":1}')
@@ -62,7 +62,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_bodies_that_cannot_be_read_are_answered_and_the_connection_lives(self) -> None:
+    async def test_unreadable_bodies_are_answered(self) -> None:
         server = await serve(Hangs())
         app = await Raw.connect(server.command_address)
         bodies = [b"[" * 100_000, b'{"a":' + b"[" * 100_000, b"\xff", b"{", b'{"a":NaN}', b"[]"]
@@ -75,7 +75,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_answers_that_nobody_asked_for_are_ignored(self) -> None:
+    async def test_unsolicited_responses_are_ignored(self) -> None:
         server = await serve(Hangs())
         app = await Raw.connect(server.command_address)
         for number in range(20):
@@ -131,7 +131,7 @@ class Hostile(unittest.TestCase):
         self.assertTrue(4.9 < took < 7, took)
 
     @clocked
-    async def test_a_body_that_stops_or_comes_in_drops_is_not_waited_for(self) -> None:
+    async def test_stalled_or_trickling_body_times_out(self) -> None:
         app = Raw.__new__(Raw)
         app.encoder = rt.Encoder(sample.SAMPLE)
         begin = app.frame(GET, bytes(100_000))[:100]
@@ -167,7 +167,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_what_came_before_garbage_is_answered(self) -> None:
+    async def test_requests_before_invalid_bytes_are_answered(self) -> None:
         server = await serve(Hangs())
         app = await Raw.connect(server.command_address)
         # Enough bytes that the robot has not read all of them when it closes.
@@ -178,7 +178,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_who_reads_slowly_gets_all_of_it_and_who_does_not_is_let_go(self) -> None:
+    async def test_slow_reader_gets_all_and_silent_reader_is_closed(self) -> None:
         server = await serve(Large(), limits=limits(in_flight=8))
         apps = [await Raw.connect(server.command_address) for _ in range(2)]
         for app in apps:
@@ -233,7 +233,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_who_holds_most_goes_when_memory_is_short(self) -> None:
+    async def test_connection_with_most_memory_is_closed(self) -> None:
         server = await serve(Hangs(), memory=4 << 20)
         modest = await Raw.connect(server.command_address)
         await self.lives(modest)
@@ -245,7 +245,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_one_address_alone_cannot_take_all_and_the_silent_give_way(self) -> None:
+    async def test_address_limit_holds_and_silent_ones_give_way(self) -> None:
         server = await serve(Hangs(), connections_per_address=3)
         speaking = [await Raw.connect(server.command_address) for _ in range(2)]
         for app in speaking:
@@ -274,7 +274,7 @@ class Hostile(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_who_is_not_allowed_gets_nowhere(self) -> None:
+    async def test_forbidden_address_cannot_connect_or_move(self) -> None:
         server = await serve(Hangs(), allow={"10.0.0.0/8": set(rt.Effect)})
         for address in (server.command_address, server.data_address):
             app = await Raw.connect(address)

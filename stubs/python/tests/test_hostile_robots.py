@@ -58,7 +58,7 @@ class Robots(unittest.TestCase):
         self.assertTrue(9.9 < took < 11, took)
 
     @clocked
-    async def test_a_length_that_swallows_the_answers_does_not_block_for_ever(self) -> None:
+    async def test_swallowed_responses_time_out(self) -> None:
         listener, client, robot = await self.meet()
         loop = asyncio.get_running_loop()
         calling = asyncio.ensure_future(client.get_battery())
@@ -102,7 +102,7 @@ class Robots(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_a_flood_of_reports_is_bounded_and_the_rest_comes_again(self) -> None:
+    async def test_flood_of_reports_is_bounded_and_repeated(self) -> None:
         listener, client, robot = await self.meet(limits=limits(queued_reports=5))
         reports = client.reports()
         for number in range(20):
@@ -123,7 +123,7 @@ class Robots(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_what_cannot_be_read_is_refused_and_never_acknowledged(self) -> None:
+    async def test_unreadable_report_is_refused(self) -> None:
         listener, client, robot = await self.meet()
         reports = client.reports()
         robot.send(DOCKING, b'{"phase":"x"}', 1, kind=3)
@@ -144,7 +144,7 @@ class Robots(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_who_receives_too_many_bytes_refuses(self) -> None:
+    async def test_too_many_bytes_are_refused(self) -> None:
         listener, client, robot = await self.meet(queued_bytes=30)
         reports = client.reports()
         for number in range(3):
@@ -157,7 +157,7 @@ class Robots(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_too_many_calls_are_busy_and_a_cancelled_one_makes_room(self) -> None:
+    async def test_call_limit_is_busy_and_cancelling_makes_room(self) -> None:
         listener, client, robot = await self.meet(limits=limits(in_flight=2))
         first, second = (asyncio.ensure_future(client.get_battery()) for _ in range(2))
         await robot.frames(2)
@@ -187,7 +187,7 @@ class Robots(unittest.TestCase):
         listener.close()
 
     @clocked
-    async def test_a_report_that_comes_too_long_after_the_last_is_counted_and_taken(self) -> None:
+    async def test_late_report_is_counted_and_delivered(self) -> None:
         class Beats(sample.Client):
             protocol = replace(
                 sample.SAMPLE, reports=(replace(sample.operations.DOCKING, cadence=rt.Cadence(every=1.0)),)

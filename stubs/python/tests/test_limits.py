@@ -112,7 +112,7 @@ class Limits(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_codes_that_are_passed_on_and_those_that_nobody_knows(self) -> None:
+    async def test_passed_through_and_unknown_codes(self) -> None:
         class Passes(sample.PartialRobot):
             async def pass_through(self, context: rt.Context, request: rt.RawRequest) -> rt.Json:
                 return rt.Json.of({"code": request.code, "resultCode": 5})

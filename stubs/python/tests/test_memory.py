@@ -115,7 +115,7 @@ class Memory(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_frames_of_streams_count_and_their_sender_goes_with_them(self) -> None:
+    async def test_stream_frames_count_as_memory_of_their_sender(self) -> None:
         server = await serve(sample.ExampleRobot(), memory=16 << 20, queued_bytes=64 << 20)
         from_apps = server.streams()
         modest = await Raw.connect(server.data_address)

@@ -88,7 +88,7 @@ class Network(AsyncCase):
         self.assertIsInstance(context.time_ms, int)
         await robot.shutdown(0)
 
-    async def test_what_is_wrong_has_its_name(self) -> None:
+    async def test_errors_have_their_names(self) -> None:
         async def refuse(_: rt.Context, __: Say) -> Say:
             raise calls.Refusal(3001, "not now")
 
@@ -104,7 +104,7 @@ class Network(AsyncCase):
         client.close()
         self.assertEqual(await name_of(client.call(READ, Say(text="hi"))), "closed")
 
-    async def test_who_closes_in_the_turn_in_which_an_attempt_fails_is_heard(self) -> None:
+    async def test_close_during_a_failed_attempt_is_honoured(self) -> None:
         dialled: asyncio.Queue[asyncio.Future[Any]] = asyncio.Queue()
 
         def dial(_: Any) -> asyncio.Future[Any]:
@@ -120,7 +120,7 @@ class Network(AsyncCase):
         _, going_on = await asyncio.wait(asyncio.all_tasks() - before, timeout=PATIENCE)
         self.assertEqual(going_on, set())
 
-    async def test_an_attempt_that_fails_in_any_way_is_a_connect_error(self) -> None:
+    async def test_any_failed_attempt_is_a_connect_error(self) -> None:
         # Neither can be encoded as a host name.
         for host in ("x" * 64 + ".example", "a..b"):
             with self.subTest(host=host), self.assertRaises(rt.ConnectError) as caught:
@@ -136,7 +136,7 @@ class Network(AsyncCase):
         lazy.connect_lazy()
         self.assertEqual((await asyncio.wait_for(lazy.closed(), PATIENCE)).detail, "LookupError")
 
-    async def test_a_raw_call_has_what_it_is_given_and_tells_what_is_answered(self) -> None:
+    async def test_raw_call_sends_given_keys_and_returns_all(self) -> None:
         robot = await self.robot({100: echo})
         client = await self.client()
         answer = await client.call_raw(100, rt.Json('{"text":"a","n":1e2}'))
@@ -161,7 +161,7 @@ class Network(AsyncCase):
         self.assertEqual(client.read_report(event, Moved), Moved(metres=7))
         await robot.shutdown(0)
 
-    async def test_a_read_is_sent_again_after_a_loss_and_a_motion_is_not(self) -> None:
+    async def test_read_is_sent_again_after_a_loss_motion_is_not(self) -> None:
         begun: asyncio.Queue[str] = asyncio.Queue()
 
         async def hang(context: rt.Context, _: Any) -> Any:
@@ -214,7 +214,7 @@ class Network(AsyncCase):
         self.assertEqual((await call).text, "hi")
         await ending
 
-    async def test_what_moves_something_runs_to_its_end_and_what_reads_does_not(self) -> None:
+    async def test_motion_outlives_its_connection_and_read_ends(self) -> None:
         go_on, ended = asyncio.Event(), asyncio.Event()
         abandoned: list[int] = []
         cancelled: list[int] = []
@@ -252,7 +252,7 @@ class Network(AsyncCase):
         self.assertEqual((await client.call(READ, Say(text="hi"))).text, "hi")
         await robot.shutdown(0)
 
-    async def test_an_app_that_resets_its_connection_holds_up_no_shutdown(self) -> None:
+    async def test_reset_connection_delays_no_shutdown(self) -> None:
         robot = await self.robot({100: echo})
         with socket.create_connection(self.address) as app:
             while robot.counters.connections == 0:
@@ -261,7 +261,7 @@ class Network(AsyncCase):
         # The robot has not noticed the reset yet.
         await asyncio.wait_for(robot.shutdown(0), PATIENCE)
 
-    async def test_a_body_too_deep_is_refused_and_the_connection_stays(self) -> None:
+    async def test_deep_body_is_refused_and_connection_stays(self) -> None:
         robot = await self.robot({100: echo})
         client = await self.client()
         body = b'{"text":' + b"[" * 100_000

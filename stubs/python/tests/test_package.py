@@ -40,7 +40,7 @@ class Package(unittest.TestCase):
             # Each call returns a new list, so changing one does not change another.
             self.assertIsNot(table()[0], rows[0])
 
-    def test_all_that_is_said_to_be_there_is_there(self) -> None:
+    def test_exported_names_exist(self) -> None:
         for package in (fc, fc.messages):
             names = package.__all__
             self.assertEqual(len(names), len(set(names)))
@@ -53,7 +53,7 @@ class Package(unittest.TestCase):
                 if inspect.isclass(value) and value.__module__ == info.name:
                     self.assertTrue(value.__doc__, f"{info.name}.{name}")
 
-    def test_what_comments_point_to_is_there(self) -> None:
+    def test_targets_of_comment_links_exist(self) -> None:
         for operation in OPERATIONS:
             with self.subTest(operation.name):
                 self.assertTrue((ROOT / operation.spec).is_file())
@@ -71,7 +71,7 @@ class Package(unittest.TestCase):
         for report in fc.FC.reports:
             self.assertEqual(hasattr(fc.Reporter, report.method_name), report.code is not None)
 
-    def test_the_client_without_async_says_what_its_methods_do(self) -> None:
+    def test_blocking_client_has_docstrings(self) -> None:
         for command in fc.FC.commands:
             name = command.method_name
             if command.code is None:
@@ -95,7 +95,7 @@ class Package(unittest.TestCase):
             Lacking()  # type: ignore[abstract]
         fc.PartialRobot()
 
-    def test_what_the_absence_of_a_field_means(self) -> None:
+    def test_absent_fields_have_their_meaning(self) -> None:
         request = fc.SaveMapRequest.example()
         request.tower = None
         self.assertEqual(request.tower_or_default, fc.SaveMapRequest.DEFAULT_TOWER)
@@ -110,7 +110,7 @@ class Package(unittest.TestCase):
         self.assertEqual(said(fc.RechargeStatus.IDLE), "IDLE")
         self.assertEqual(said(rt.Unknown(200)), 200)
 
-    def test_states_say_what_may_follow_them(self) -> None:
+    def test_states_know_their_successors(self) -> None:
         state = fc.RechargeStatus
         self.assertTrue(state.NAVIGATING.normally_follows(state.IDLE))
         self.assertFalse(state.CHARGING.normally_follows(state.IDLE))

@@ -124,7 +124,7 @@ class Programs(AsyncCase):
     async def test_the_robot_of_rust_that_is_killed_comes_back(self) -> None:
         await self.comes_back("rust")
 
-    async def test_without_a_robot_the_app_says_so(self) -> None:
+    async def test_app_reports_a_missing_robot(self) -> None:
         process, commands, data = await self.robot("python")
         process.send_signal(signal.SIGINT)
         self.assertEqual((await outcome(process))[0], 0)
@@ -231,7 +231,7 @@ class Programs(AsyncCase):
     async def call(self, *arguments: str) -> tuple[int | None, str, str]:
         return await outcome(await start([sys.executable, "-m", "fc.call", *arguments]))
 
-    async def test_the_tool_calls_and_says_what_is_wrong(self) -> None:
+    async def test_tool_calls_and_reports_errors(self) -> None:
         process, commands, _ = await self.robot("python")
         robot = ["--host", "127.0.0.1", "--command-port", commands]
         code, out, error = await self.call("get_robot_sn", *robot)

@@ -48,7 +48,7 @@ class Sample(AsyncCase):
             self.assertNotIn("owner", repr(GetBatteryResponse(level=1, phase=Phase.IDLE, owner="me")))
         await server.shutdown(0)
 
-    async def test_what_is_left_out_is_refused_and_what_is_declared_has_a_name(self) -> None:
+    async def test_omitted_command_is_refused_declared_error_has_name(self) -> None:
         robot = Docks()
         robot.phase = Phase.DRIVING
         server = await self.serve(robot)
@@ -133,7 +133,7 @@ class Sample(AsyncCase):
         robot(get_batery=helper, _get_batery=handler, charge=handler)
         robot(dock=handler, docks=handler)
 
-    def test_an_error_says_what_is_wanted_and_not_what_was_there(self) -> None:
+    def test_error_states_the_expectation_not_the_value(self) -> None:
         for text in ('{"level":1234,"phase":0}', '{"level":123.4,"phase":0}', '{"level":"1234","phase":0}'):
             with self.assertRaises(rt.BodyError) as caught:
                 GetBatteryResponse.from_json(text)

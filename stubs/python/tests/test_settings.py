@@ -160,7 +160,7 @@ class Settings(unittest.TestCase):
         await server.shutdown(0)
 
     @clocked
-    async def test_wrong_codes_and_ids_are_refused_and_nothing_is_sent(self) -> None:
+    async def test_wrong_codes_and_ids_are_refused_unsent(self) -> None:
         server = await serve(sample.ExampleRobot())
         host, port = server.command_address
         config = rt.ClientConfig(host=host, command_port=port, data_port=server.data_address[1])

@@ -57,7 +57,7 @@ class Shutdown(unittest.TestCase):
         return await sample.Client.connect(config)
 
     @clocked
-    async def test_what_is_being_handled_is_answered_and_what_comes_later_is_not(self) -> None:
+    async def test_shutdown_answers_running_calls_only(self) -> None:
         robot = Slow()
         server = await serve(robot, handler_timeout=1000)
         clients = [await self.client(server) for _ in range(4)]
@@ -75,7 +75,7 @@ class Shutdown(unittest.TestCase):
         await server.run()
 
     @clocked
-    async def test_what_takes_longer_is_cut_off(self) -> None:
+    async def test_shutdown_ends_at_its_limit(self) -> None:
         robot = Slow()
         server = await serve(robot, handler_timeout=1000)
         client = await self.client(server)
@@ -101,7 +101,7 @@ class Shutdown(unittest.TestCase):
         self.assertEqual((robot.ended, robot.cancelled), (0, 4))
 
     @clocked
-    async def test_who_reads_slowly_gets_what_was_answered(self) -> None:
+    async def test_slow_reader_gets_its_responses(self) -> None:
         class Long(sample.PartialRobot):
             async def get_battery(self, context: rt.Context, request: GetBatteryRequest) -> GetBatteryResponse:
                 return GetBatteryResponse(level=1, phase=Phase.IDLE, owner="x" * (8 << 20))
@@ -126,7 +126,7 @@ class Shutdown(unittest.TestCase):
         await ending
 
     @clocked
-    async def test_those_who_stall_send_or_do_not_read_keep_nobody(self) -> None:
+    async def test_stalled_apps_delay_no_shutdown(self) -> None:
         server = await serve(sample.ExampleRobot())
         half = await Raw.connect(server.command_address)
         half.writer.write(half.frame(GET, b"{}")[:20])
@@ -154,7 +154,7 @@ class Shutdown(unittest.TestCase):
             app.writer.transport.abort()
 
     @clocked
-    async def test_a_motion_outlives_its_connection_and_a_shutdown_waits_for_it(self) -> None:
+    async def test_shutdown_waits_for_a_detached_motion(self) -> None:
         robot = Slow()
         server = await serve(robot, handler_timeout=1000)
         client = await self.client(server)

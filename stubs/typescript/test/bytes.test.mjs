@@ -4,7 +4,7 @@ import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { hex, hexNumber, readUint, writeUint } from 'fc-protocol/codec'
 
-test('hex has two digits for a byte, and numbers at least as many as asked for', () => {
+test('hex pads bytes to two digits and numbers to a width', () => {
   assert.equal(hex(Uint8Array.of(0, 10, 255)), '00 0A FF')
   assert.equal(hex(new Uint8Array()), '')
   assert.equal(hexNumber(0xa01, 4), '0x0A01')

@@ -52,7 +52,7 @@ test('each end of a call has its name and its cause', async () => {
   assert.equal(connection.counters().timeouts, 1)
 })
 
-test('a refusal is one, whatever stands beside it', async () => {
+test('a refusal stays a refusal with other keys', async () => {
   const { raw, connection } = await client()
   const end = ends(connection.call(echo, { text: 'a' }))
   await settle()
@@ -60,7 +60,7 @@ test('a refusal is one, whatever stands beside it', async () => {
   assert.deepEqual([(await end).kind, (await end).refusal.code, (await end).refusal.text], ['refused', 4, 'too old'])
 })
 
-test('what breaks a constraint, or does not fit, is not sent', async () => {
+test('a request that breaks a constraint or is too long is not sent', async () => {
   const { raw, connection } = await client()
   const invalid = await ends(connection.call(echo, { text: 'x'.repeat(1001) }))
   assert.deepEqual([invalid.kind, invalid.body.kind, invalid.body.path], ['invalid_request', 'bad_length', 'text'])
@@ -71,7 +71,7 @@ test('what breaks a constraint, or does not fit, is not sent', async () => {
   assert.equal(connection.inFlight, 0)
 })
 
-test('a broken answer ends its call, and the connection goes on', async () => {
+test('a broken response ends only its call', async () => {
   const { raw, connection } = await client()
   const end = ends(connection.call(echo, { text: 'a' }))
   await settle()
@@ -95,7 +95,7 @@ test('connection with resync over garbage', async () => {
   assert.equal(connection.state.is, 'connected')
 })
 
-test('a call can be given up, before and after it is sent, and gives its place back', async () => {
+test('an aborted call frees its place before and after sending', async () => {
   const { raw, connection } = await client({ limits: { inFlight: 1 } })
   const abort = new AbortController()
   const end = ends(connection.call(echo, { text: 'a' }, { signal: abort.signal }))
@@ -112,7 +112,7 @@ test('a call can be given up, before and after it is sent, and gives its place b
   assert.equal(connection.counters().lateAnswers, 1)
 })
 
-test('raw calls are judged by nobody', async () => {
+test('raw calls are not checked', async () => {
   const { raw, connection } = await client()
   const call = connection.callRaw(0x1234, '{"a": 1.50, "b":null}')
   await settle()
@@ -128,7 +128,7 @@ test('raw calls are judged by nobody', async () => {
   assert.equal((await ends(connection.callRaw(1, '[]'))).kind, 'invalid_request')
 })
 
-test('requests are compressed where it makes them shorter', async () => {
+test('requests are compressed if that makes them shorter', async () => {
   const { raw, connection } = await client({ gzip: { fromBytes: 100 } })
   void ends(connection.call(echo, { text: 'x'.repeat(900) }))
   void ends(connection.call(echo, { text: 'short' }))
@@ -139,7 +139,7 @@ test('requests are compressed where it makes them shorter', async () => {
   assert.equal(short.sent, short.data.length)
 })
 
-test('without a connection, a call waits for one, and says why there was none', async () => {
+test('a call waits for a connection and reports why there is none', async () => {
   const { platform, clock, connection } = lazyClient({ reconnect: { first: 100, longest: 100 } })
   assert.deepEqual(connection.state, { is: 'connecting', connects: 0, why: { is: 'not_yet' } })
   const gone = ends(connection.call(go, { metres: 1 }, { timeout: 500 }))
@@ -156,7 +156,7 @@ test('without a connection, a call waits for one, and says why there was none', 
   assert.deepEqual(await waits, {})
 })
 
-test('the first attempt may fail, by the network and by time', async () => {
+test('the first attempt may fail by the network or by time', async () => {
   const { FakePlatform, toy } = await import('./toy.mjs')
   const { dial, ConnectError, TransportError } = await import('fc-protocol/runtime')
   const platform = new FakePlatform()
@@ -173,7 +173,7 @@ test('the first attempt may fail, by the network and by time', async () => {
   assert.ok(raw.isClosed)
 })
 
-test('who closes gets an end of all that waits', async () => {
+test('closing ends everything that waits', async () => {
   const { raw, connection, clock } = await client()
   const [sent, reports] = [ends(connection.call(echo, { text: 'a' })), connection.reports()]
   const states = []

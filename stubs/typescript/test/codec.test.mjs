@@ -35,7 +35,7 @@ function fault(run) {
 
 const faultOf = (text, allowance = ANY) => fault(() => readMessage(struct, bytesOf(text), allowance))
 
-test('a fault has its place, and of several the first in the order of the rules is named', () => {
+test('the first error in the order of the rules is reported with its place', () => {
   for (const [text, kind, path] of [
     // Invalid JSON comes before all errors inside it.
     ['{"whole":"x",}', 'bad_json', ''],
@@ -56,13 +56,13 @@ test('a fault has its place, and of several the first in the order of the rules 
   }
 })
 
-test('a fault of the envelope comes before one of the message', () => {
+test('an envelope error precedes a message error', () => {
   const found = (text) => fault(() => readEnveloped(envelope, struct, bytesOf(text), ANY))
   assert.deepEqual(found('{"whole":"x","time":"y"}'), ['wrong_type', 'time'])
   assert.deepEqual(found('{"time":1,"whole":"x"}'), ['wrong_type', 'whole'])
 })
 
-test('the keys of envelope and message come in any order, and unknown ones stay with the message', () => {
+test('envelope and message keys mix, and unknown keys stay with the message', () => {
   const text = '{"b":[1.0,1.0],"whole":1,"time":2,"b":"\\ud800","a b":1e400}'
   const read = readEnveloped(envelope, struct, bytesOf(text), ANY)
   assert.deepEqual(read.envelope, { time: 2n })
@@ -98,7 +98,7 @@ test('values are what the language has for them', () => {
   assert.equal(Object.getPrototypeOf(odd), Object.prototype)
 })
 
-test('what breaks its own constraints is refused before it is sent', () => {
+test('a message that breaks its constraints is refused before sending', () => {
   for (const [message, kind, path] of [
     [{}, 'missing_field', 'whole'],
     [{ whole: 1.5 }, 'wrong_type', 'whole'],
@@ -125,7 +125,7 @@ test('what breaks its own constraints is refused before it is sent', () => {
   assert.equal(toJson(struct, { whole: 1, short: 16777217, text: undefined }), '{"whole":1,"short":16777216}')
 })
 
-test('what reading costs is bounded', () => {
+test('the cost of reading is bounded', () => {
   const depth = 3
   assert.equal(faultOf('{"whole":1,"x":[[1]]}', { ...ANY, depth }), null)
   assert.deepEqual(faultOf('{"whole":1,"x":[[[1]]]}', { ...ANY, depth })?.[0], 'too_deep')
@@ -137,7 +137,7 @@ test('what reading costs is bounded', () => {
   assert.equal(faultOf(`{"x":${brackets}${']'.repeat(100_000)}}`)?.[0], 'too_deep')
 })
 
-test('ids that are still in flight are passed over when they come round', () => {
+test('ids in flight are skipped after a wrap', () => {
   const ack = { timeout: 9, retries: 0 }
   const session = new Session({ report: 3, stream: 0, inFlight: 64, remembers: 4, ack, firstId: 6, idMax: 7 })
   const open = () => session.open(1, 5, ack, 0, null)?.id ?? null

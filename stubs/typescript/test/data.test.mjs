@@ -20,7 +20,7 @@ async function data(config) {
   return { ...all, commands: all.raw, port, raw }
 }
 
-test('it waits for the command connection, and then goes to its own port', async () => {
+test('the data port connects after the command port', async () => {
   const { platform, raw, connection } = await client({ callTimeout: 1000, dataPort: 77 })
   raw.end.close()
   await settle()
@@ -44,7 +44,7 @@ test('it waits for the command connection, and then goes to its own port', async
   await port.connected()
 })
 
-test('frames go either way, and only one waits for who does not take it', async () => {
+test('frames flow both ways, and only the unread one waits', async () => {
   const { raw, port } = await data()
   await port.send(400, 9, bytes(1, 2, 3))
   await settle()
@@ -55,7 +55,7 @@ test('frames go either way, and only one waits for who does not take it', async 
   for (const id of [1, 2, 3]) assert.deepEqual(await port.recv(), { code: 400, id, data: bytes(id) })
 })
 
-test('what is no frame of a stream is told, and the connection goes on', async () => {
+test('an invalid stream frame is reported, and the connection stays', async () => {
   const { raw, port } = await data()
   const broken = framing.encode({ response: false, ...frame(400, 1) }, bytes(1), null)
   broken[34] ^= 1
@@ -71,7 +71,7 @@ test('what is no frame of a stream is told, and the connection goes on', async (
   assert.equal((await ends(port.send(400, 1, new Uint8Array(70_000)))).frame, 'frame_too_long')
 })
 
-test('a subscription has its own queue, in which the oldest makes way', async () => {
+test('each subscription has its own queue that drops the oldest', async () => {
   const { raw, port } = await data()
   const [all, json] = [port.subscribe(pictures), port.subscribe(scans)]
   for (let id = 1; id <= 6; id++) await raw.send(frame(400, id), bytes(id))
@@ -118,7 +118,7 @@ test('typed content is checked before it is sent', async () => {
   assert.equal((await ends(port.sendStream(scans, 5, { metres: 2 ** 40 }))).kind, 'invalid')
 })
 
-test('a loss is told once either way, and it goes on over the next connection', async () => {
+test('a loss is reported once, and the next connection continues', async () => {
   const { platform, raw, port } = await data()
   const subscribed = port.subscribe(pictures)
   await port.send(401, 1, bytes(1))
@@ -139,7 +139,7 @@ test('a loss is told once either way, and it goes on over the next connection', 
   assert.equal((await subscribed.next()).value.id, 4)
 })
 
-test('it is made again with the command connection, and ends with it', async () => {
+test('the data connection follows the command connection', async () => {
   const { platform, commands, raw, port, connection } = await data()
   commands.end.close()
   await settle()

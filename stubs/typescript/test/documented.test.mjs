@@ -34,7 +34,7 @@ for (const folder of ['src', 'generated']) {
   }
 }
 
-test('what has no comment is named', () => {
+test('items without a comment are listed', () => {
   const declarations = `
 /** Has one. */
 export interface A {

@@ -7,7 +7,7 @@ import { errorText } from 'fc-protocol/codec'
 import { BodyError, CallError, callErrorText, DataError, Refusal } from 'fc-protocol/runtime'
 import { holds, vectors } from './support.mjs'
 
-test('every name of the vectors has a meaning in both languages', () => {
+test('every error of the vectors has a text in both languages', () => {
   const names = new Set(vectors.flatMap(({ rejected }) => rejected.map(({ error }) => error)))
   assert.ok(names.size > 20)
   for (const name of names) {
@@ -16,14 +16,14 @@ test('every name of the vectors has a meaning in both languages', () => {
   }
 })
 
-test('the names and their meanings are those of the list that all implementations share', () => {
+test('names and texts match the shared list', () => {
   const shared = JSON.parse(readFileSync(new URL('../../../conformance/errors.json', import.meta.url), 'utf8'))
   const own = shared.errors.filter(({ where, own_limit }) => where !== 'call' && !own_limit)
   assert.deepEqual(Object.fromEntries(own.map(({ name, zh, en }) => [name, { zh, en }])), errorText)
   for (const { where } of own) holds(`${where}_errors`)
 })
 
-test('an error says what it comes from as errors do', () => {
+test('an error has its cause', () => {
   const refusal = new Refusal(7, 'no')
   const body = new BodyError('missing_key', 'a number', 'a.b')
   for (const Of of [CallError, DataError]) {
@@ -34,7 +34,7 @@ test('an error says what it comes from as errors do', () => {
   }
 })
 
-test('the errors of calls have the names of the list, too', () => {
+test('errors of calls have names of the list', () => {
   const shared = JSON.parse(readFileSync(new URL('../../../conformance/errors.json', import.meta.url), 'utf8'))
   const calls = shared.errors.filter(({ where }) => where === 'call').map(({ name }) => name)
   assert.deepEqual(calls.sort(), Object.keys(callErrorText).sort())

@@ -44,7 +44,7 @@ for (const { name: of, codec, vectors } of protocols) {
   })
 }
 
-test('frames follow one another, also behind one that cannot be read', () => {
+test('frames are read after an unreadable one', () => {
   const { accepted, rejected } = vectors.find(({ file }) => file === 'frames.json')
   const good = accepted.map(({ frame }) => bytesOf(frame))
   const bad = rejected.filter(({ error }) => !FATAL.includes(error)).map(({ frame }) => bytesOf(frame))
@@ -54,7 +54,7 @@ test('frames follow one another, also behind one that cannot be read', () => {
   for (const size of [1, 13, 64, bytes.length]) assert.deepEqual(all(codec, split(bytes, size)), wanted, String(size))
 })
 
-test('a wrong head is found at once, and nothing is kept behind it', () => {
+test('a wrong head is found at once and drops the rest', () => {
   const stream = new FrameStream(framingOf(codec))
   stream.push(Uint8Array.of(0))
   assert.deepEqual(stream.next(), { fatal: 'bad_head' })

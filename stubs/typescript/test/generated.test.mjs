@@ -121,7 +121,7 @@ for (const { name: of, codec, vectors, runtime, generated, wire } of protocols) 
   test(`${of}: vectors were read`, () => assert.ok(count > 20, `${count}`))
 }
 
-test('what is absent is what its default says', () => {
+test('absent fields have their defaults', () => {
   const { defaults, withDefaults } = protocols.find(({ name }) => name === 'meter').generated
   const request = { band: 1, price: 7, note: undefined }
   const filled = withDefaults(request, defaults.SetTariffRequest)

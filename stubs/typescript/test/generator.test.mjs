@@ -44,7 +44,7 @@ test('each audience has a whole package', { skip: unlessGenerated }, () => {
   }
 })
 
-test('commands that are called like members of a connection', { skip: unlessGenerated }, () => {
+test('commands may have the names of connection members', { skip: unlessGenerated }, () => {
   // Spelled as in the spec: `inFlight` is `in_flight`.
   const members = Object.getOwnPropertyNames(Connection.prototype).filter((name) => name !== 'constructor')
   const words = [...members, 'connect', 'connectLazy', 'core', 'server', 'pretendMotion', 'passThrough']

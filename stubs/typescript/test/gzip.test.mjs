@@ -69,7 +69,7 @@ for (const [platform, algorithms] of Object.entries({ node: nodeAlgorithms, web:
   })
 }
 
-test('a member is taken, and nothing but one whole member', () => {
+test('exactly one whole gzip member is accepted', () => {
   assert.equal(fault(member), null)
   for (const [name, bytes] of [
     ...several(member),

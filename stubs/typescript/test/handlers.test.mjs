@@ -365,7 +365,7 @@ test('refusal_that_no_response_can_carry_is_an_error', async () => {
   }
 })
 
-test('response_or_refusal_too_long_for_a_frame_is_an_error', async () => {
+test('response_or_refusal_too_long_is_a_protocol_error', async () => {
   const noise = Array.from({ length: 60_000 }, (_, at) =>
     String.fromCharCode(0x4e00 + ((at * 2654435761) >>> 20)),
   ).join('')
@@ -401,7 +401,7 @@ test('response_or_refusal_too_long_for_a_frame_is_an_error', async () => {
   assert.equal(one.server.counters().callsProtocol, 1)
 })
 
-test('request_report_and_stream_that_are_none_are_refused_by_name', async () => {
+test('invalid_messages_are_refused_by_name', async () => {
   const { connection, raw } = await client()
   const data = connection.data()
   const { server, join } = robot({})
@@ -469,7 +469,7 @@ async function pipelined(join, requests) {
   return raw
 }
 
-test('an_app_that_never_reads_is_not_read_and_holds_little', async () => {
+test('app_that_never_reads_is_not_read_either', async () => {
   const extra = [{ key: 'more', json: `"${'x'.repeat(50_000)}"` }]
   const slowly = { ...nodeAlgorithms, gzip: (data) => new Promise((resolve) => setImmediate(resolve, data)) }
   for (const [gzip, algorithms] of [
@@ -500,7 +500,7 @@ test('an_app_that_never_reads_is_not_read_and_holds_little', async () => {
   }
 })
 
-test('answers_that_nobody_reads_count_as_memory', async () => {
+test('unread_responses_count_as_memory', async () => {
   const open = []
   const handler = () => new Promise((resolve) => open.push(resolve))
   const { server, join } = robot({ echo: handler }, { memory: 400_000 })
@@ -516,7 +516,7 @@ test('answers_that_nobody_reads_count_as_memory', async () => {
   assert.ok(!other.isClosed)
 })
 
-test('an_app_that_leaves_gets_answers_that_are_being_compressed', async () => {
+test('leaving_app_gets_responses_in_compression', async () => {
   for (const isBroken of [false, true]) {
     let pack = () => {}
     const gzip = (data) =>

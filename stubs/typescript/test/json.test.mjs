@@ -4,7 +4,7 @@ import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { compact, integral } from 'fc-protocol/codec'
 
-test('white space goes, and what is not JSON stays as it was typed', () => {
+test('white space is removed, and invalid JSON stays as typed', () => {
   assert.equal(compact('{ "a b" : 12345678901234567890 }', 9), '{"a b":12345678901234567890}')
   assert.equal(compact('{ "a" : }', 9), '{ "a" : }')
   assert.equal(compact('[\n\t" \\" " ,\r\n"\\\\" , " "]', 9), '[" \\" ","\\\\"," "]')

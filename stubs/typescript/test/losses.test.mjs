@@ -11,7 +11,7 @@ const ends = (call) =>
   )
 const NEVER = { reconnect: null }
 
-test('bytes that are no frames lose the connection, with what is wrong', async () => {
+test('invalid bytes end the connection with the reason', async () => {
   for (const [bytes, fault] of [
     [new TextEncoder().encode('HTTP/1.1 400 Bad Request\r\n'), 'bad_head'],
     [Uint8Array.of(0x70, 2, 1, 0, 100, 0, 0, 0, 1, 0, 0, 0, 0, 5, 0, 0, 0, 0), 'short_frame'],
@@ -27,7 +27,7 @@ test('bytes that are no frames lose the connection, with what is wrong', async (
   }
 })
 
-test('an end inside a frame, between frames, and before any frame', async () => {
+test('the stream may end inside, between and before frames', async () => {
   const inside = await client(NEVER)
   await inside.raw.sendBytes(Uint8Array.of(0x70))
   inside.raw.end.end()
@@ -77,7 +77,7 @@ test('a robot that does not read is unread', async () => {
   assert.deepEqual((await end).loss, { is: 'unread' })
 })
 
-test('waits between attempts double up to the longest, and begin again once the robot was heard', async () => {
+test('waits between attempts double up to a limit and reset after a frame', async () => {
   const { platform, clock, raw, connection } = await client({ reconnect: { first: 100, longest: 400 } })
   raw.end.close()
   const waits = []
@@ -104,7 +104,7 @@ test('waits between attempts double up to the longest, and begin again once the 
   assert.equal(platform.waiting.length, 1)
 })
 
-test('a robot that accepts and closes is not flooded, and after so many failures it is given up', async () => {
+test('a robot that accepts and closes is given up after the limit', async () => {
   const { platform, clock, raw, connection } = await client({ reconnect: { first: 100, longest: 10_000, attempts: 2 } })
   raw.end.close()
   await settle()
@@ -121,7 +121,7 @@ test('a robot that accepts and closes is not flooded, and after so many failures
   assert.equal((await connection.closed()).is, 'unreachable')
 })
 
-test('reads go again over the next connection, once; what moves does not', async () => {
+test('reads are sent again once after a loss, motions are not', async () => {
   const { platform, raw, connection } = await client()
   const [read, moves] = [ends(connection.call(echo, { text: 'r' })), ends(connection.call(go, { metres: 1 }))]
   await settle()
@@ -142,7 +142,7 @@ test('reads go again over the next connection, once; what moves does not', async
   connection.close()
 })
 
-test('an app that closes while it connects leaves nothing behind', async () => {
+test('closing while connecting leaves nothing open', async () => {
   const { platform, raw, connection, clock } = await client()
   raw.end.close()
   await settle()

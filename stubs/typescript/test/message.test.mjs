@@ -17,7 +17,7 @@ import { codec } from './support.mjs'
 const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
 const uncoded = { ...operation, code: null }
 
-test('a frame says what it was made from', () => {
+test('a decoded frame has the values it was encoded from', () => {
   for (const side of ['request', 'response']) {
     for (const [gzip, role] of [
       [false, 'plain'],
@@ -38,19 +38,19 @@ test('a frame says what it was made from', () => {
   }
 })
 
-test('without a code there is no frame, and no code belongs to no operation', () => {
+test('an operation without a code has no frame', () => {
   assert.equal(messageFrame(codec, uncoded, { side: 'request', id: 1, gzip: false }, '{}'), null)
   assert.equal(operationOf({ ...protocol, operations: [uncoded] }, null), null)
   assert.equal(operationOf(protocol, operation.code), operation)
 })
 
-test('what is cut off has no numbers, and half a head no side', () => {
+test('truncated headers have no numbers, half a head no side', () => {
   const decoded = decodeFrame(codec, Uint8Array.from(protocol.requestHead.slice(0, -1)))
   assert.equal(decoded.fault, 'truncated')
   assert.equal(headerValue(decoded, 'code'), null)
   assert.equal(sideOf(protocol, decoded), null)
 })
 
-test('a role that no field has is a fault of the protocol', () => {
+test('a role without a field is an error of the protocol', () => {
   assert.throws(() => fieldOf({ ...protocol, header: [] }, 'id'), /no header field with role id/)
 })

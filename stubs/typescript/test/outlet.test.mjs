@@ -22,7 +22,7 @@ const events = { stalled: () => assert.fail('stalled'), broke: () => assert.fail
 const sent = (writes) => Buffer.concat(writes.map(({ bytes }) => bytes))
 const turn = () => new Promise((resolve) => setImmediate(resolve))
 
-test('what is said at a moment is one write, unless it is much', async () => {
+test('small writes of one turn are combined', async () => {
   const to = transport()
   const outlet = new Outlet(to, clock, 1000, 1, events)
   for (let count = 0; count < 10; count++) outlet.push(Uint8Array.of(count))
@@ -45,7 +45,7 @@ test('what is said at a moment is one write, unless it is much', async () => {
   assert.equal(sent(to.writes).length, 10_010)
 })
 
-test('the order holds around what is written in pieces, however late each write ends', async () => {
+test('order holds around chunked writes that end late', async () => {
   const to = transport()
   const outlet = new Outlet(to, clock, 1000, 1, events)
   const pushed = []
@@ -69,7 +69,7 @@ test('the order holds around what is written in pieces, however late each write 
   assert.ok(sent(to.writes).equals(Buffer.concat(pushed)))
 })
 
-test('a transport that breaks under several writes is told of once', async () => {
+test('a broken transport is reported once', async () => {
   const to = transport()
   let broke = 0
   const outlet = new Outlet(to, clock, 1000, 1, { ...events, broke: () => broke++ })

@@ -76,7 +76,7 @@ test('a field is there exactly where its condition holds', () => {
   assert.deepEqual(fault(outer({ parts: [{ on: false }] }))?.slice(0, 2), ['parts[0].why', 'missing'])
 })
 
-test('what is sensitive is left out of texts', () => {
+test('sensitive values are left out of texts', () => {
   const message = outer({ parts: [{ on: true }] })
   assert.deepEqual(redacted(Outer, message), { mode: 4, speed: 1, parts: [{ on: true }], password: '***' })
   assert.equal(message.password, 'secret')

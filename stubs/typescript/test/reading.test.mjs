@@ -33,7 +33,7 @@ const kindOf = (bytes) => {
   return null
 }
 
-test('numbers are the nearest there are, with few digits and with many', () => {
+test('numbers are rounded to the nearest with any digits', () => {
   const some = ['0', '-0', '1', '10', '0.1', '-0.5', '1.0', '123456789012345', '1234567890123456', '9007199254740993']
   const more = ['0.30000000000000004', '1e3', '1E-3', '2.5e+10', '0.000001', '99999999.9999999', '4.35', '1e400']
   for (let count = 0; count < 2000; count++) more.push(String((Math.random() - 0.5) * 10 ** (count % 18)))
@@ -48,7 +48,7 @@ test('numbers are the nearest there are, with few digits and with many', () => {
   }
 })
 
-test('what only begins as a number is none', () => {
+test('text after a number makes it invalid', () => {
   for (const text of ['01', '-', '1.', '.5', '+1', '1.e3', '1e', '0x10', '1 1', '--1', '1.5.5', '']) {
     assert.equal(kindOf(utf8(`{"number":${text}}`)), 'bad_json', text)
     assert.equal(kindOf(utf8(`{"quoted":"${text}"}`)), 'wrong_type', text)
@@ -60,7 +60,7 @@ test('what only begins as a number is none', () => {
   assert.ok(Object.is(read(utf8('{"whole":-0}')).whole, 0))
 })
 
-test('texts are what UTF-8 says, short or long, beside escapes and inside what nobody knows', () => {
+test('texts decode as UTF-8 in every place', () => {
   for (const text of [
     '',
     'a',
@@ -83,7 +83,7 @@ test('texts are what UTF-8 says, short or long, beside escapes and inside what n
   }
 })
 
-test('every pair of bytes, and every start of three and four, is UTF-8 to the reader where it is to the decoder', () => {
+test('the reader and TextDecoder agree on UTF-8', () => {
   const strict = new TextDecoder('utf-8', { fatal: true, ignoreBOM: true })
   const quote = (bytes) => Uint8Array.from([...utf8('{"text":"'), ...bytes, ...utf8('"}')])
   const judged = (bytes) => {
@@ -104,7 +104,7 @@ test('every pair of bytes, and every start of three and four, is UTF-8 to the re
   }
 })
 
-test('what is no UTF-8 is refused wherever it stands', () => {
+test('invalid UTF-8 is refused in every place', () => {
   const places = [
     '{"text":"?"}',
     '{"?":1}',
@@ -137,7 +137,7 @@ test('base64 is that of the platform, of every length', () => {
   }
 })
 
-test('rooms that are held at the same time are not the same', () => {
+test('buffers held at the same time are distinct', () => {
   const held = []
   for (let count = 0; count < 3000; count++) held.push({ bytes: room(count % 300).fill(count & 0xff), count })
   const texts = Array.from({ length: 3000 }, (_, count) => ({ text: `门${count}`, bytes: utf8Of(`门${count}`) }))
@@ -159,7 +159,7 @@ test('a browser has a character for each byte as well', async () => {
   assert.equal(oneForEach(new Uint8Array()), '')
 })
 
-test('values_count_while_they_are_read_and_end_it_at_the_limit', () => {
+test('value_limit_applies_while_reading', () => {
   const choice = { is: 'choice', name: 'Any', forms: { All: () => struct } }
   const holder = { is: 'struct', name: 'Holder', fields: { one: { key: 'one', type: () => choice, optional: true } } }
   const many = '"a":[[1,2]],'

@@ -7,7 +7,7 @@ import { bodyOf, client, drive, KINDS, moved, pipe, progress, Raw, settle } from
 const report = (code, id) => ({ kind: KINDS.report, code, id })
 const results = (raw) => raw.take().map((frame) => [frame.id.id, bodyOf(frame).result])
 
-test('each receiver gets all reports or those of one kind, typed, and unknown ones as they are', async () => {
+test('receivers get all or one kind of report, and unknown ones raw', async () => {
   const { raw, connection } = await client()
   const [all, some] = [connection.reports(), connection.reports(moved)]
   const heard = []
@@ -43,7 +43,7 @@ test('each receiver gets all reports or those of one kind, typed, and unknown on
   assert.deepEqual(heard, [1, 2])
 })
 
-test('what nobody takes is not acknowledged, and what cannot be read is refused', async () => {
+test('an untaken report is not acknowledged, an unreadable one refused', async () => {
   const { raw, connection } = await client({ limits: { queuedReports: 1 } })
   await raw.send(report(moved.code, 1), { metres: 1 })
   await settle()
@@ -66,7 +66,7 @@ test('what nobody takes is not acknowledged, and what cannot be read is refused'
   assert.deepEqual([reports, reportsMissed, reportsRefused, reportsInvalid], [2, 1, 1, 1])
 })
 
-test('a report that comes late of its interval is counted', async () => {
+test('a report later than its interval is counted', async () => {
   const { raw, connection, clock } = await client()
   const reports = connection.reports()
   for (const [wait, id] of [
@@ -92,7 +92,7 @@ async function begun(config) {
   return { ...all, following: await call }
 }
 
-test('what a command sets off is followed to its end, from before the answer on', async () => {
+test('following has the reports from before the response to the end', async () => {
   const { raw, connection, following } = await begun()
   assert.deepEqual(following.answer, { drive: 7 })
   for (const [id, body] of [
@@ -122,7 +122,7 @@ test('what a command sets off is followed to its end, from before the answer on'
   assert.deepEqual(results(raw), [], 'nobody takes it any more')
 })
 
-test('a failure ends it, a loss and a full queue are told in their place', async () => {
+test('a failure ends following, losses are told in order', async () => {
   const { raw, platform, connection, following } = await begun({ limits: { queuedReports: 2 } })
   const other = connection.reports(progress)
   await raw.send(report(progress.code, 2), { drive: 7, state: 1 })
@@ -147,7 +147,7 @@ test('a failure ends it, a loss and a full queue are told in their place', async
   assert.equal((await following.next()).done, true)
 })
 
-test('it ends with the connection, and when nobody wants it any more', async () => {
+test('following ends with the connection or its reader', async () => {
   const { connection, following } = await begun()
   await following.next()
   connection.close()
@@ -161,7 +161,7 @@ test('it ends with the connection, and when nobody wants it any more', async () 
   assert.equal((await one.following.next()).done, true)
 })
 
-test('a command that is refused is not followed, and follow comes at once or not at all', async () => {
+test('a refused command is not followed', async () => {
   const { raw, connection } = await client()
   const call = connection.call(drive, { metres: 5 }).follow()
   await settle()

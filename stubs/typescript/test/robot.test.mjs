@@ -22,7 +22,7 @@ function held() {
   return { open, handler }
 }
 
-test('requests are answered at once or later, refused by name, and a thrown error harms its own call alone', async () => {
+test('handlers answer at once or later, and an error ends only its call', async () => {
   const { open, handler } = held()
   const methods = {
     echo: handler,
@@ -51,7 +51,7 @@ test('requests are answered at once or later, refused by name, and a thrown erro
   assert.deepEqual([callsSucceeded, callsRefused, callsProtocol, handlersPanicked], [1, 1, 1, 1])
 })
 
-test('what a robot does not implement, and what it does not know, is never answered with success', async () => {
+test('unimplemented and unknown commands are never a success', async () => {
   const log = []
   const { server, join } = robot(echoes, { log: (...line) => log.push(line) })
   const raw = join()
@@ -70,7 +70,7 @@ test('what a robot does not implement, and what it does not know, is never answe
   assert.ok(log.some(([level, text, { name }]) => level === 'warn' && text === 'not implemented' && name === 'go'))
 })
 
-test('codes of a range and all others can have a method of their own, with JSON in and out', async () => {
+test('code ranges and other codes may have raw handlers', async () => {
   const asked = []
   const { join } = robot({
     passThrough: (request) => {
@@ -88,7 +88,7 @@ test('codes of a range and all others can have a method of their own, with JSON 
   assert.deepEqual([bodyOf(one).x, bodyOf(one).result, bodyOf(two).result], [1, 0, 1])
 })
 
-test('an invalid request reaches no handler, and an invalid response no app', async () => {
+test('invalid requests and responses are stopped', async () => {
   let handled = 0
   const { server, join } = robot(
     {
@@ -115,7 +115,7 @@ test('an invalid request reaches no handler, and an invalid response no app', as
   assert.equal(server.counters().callsExpired, 1)
 })
 
-test('a slow handler is told, runs on if it moves something, and its place is given back', async () => {
+test('a slow motion runs on and frees its place', async () => {
   const { open, handler } = held()
   const { server, join, clock } = robot({ go: handler, echo: handler }, { handlerTimeout: 100, abandonedHandlers: 1 })
   const raw = join()
@@ -147,7 +147,7 @@ test('a slow handler is told, runs on if it moves something, and its place is gi
   assert.deepEqual([server.counters().handlersAbandoned, server.counters().abandonedReached], [1, 1])
 })
 
-test('an app that closes its side, or sends what is no frame, is answered first', async () => {
+test('requests before a close or invalid bytes are answered', async () => {
   for (const end of [(raw) => raw.end.end(), (raw) => raw.sendBytes(new TextEncoder().encode('GET / HTTP/1.1'))]) {
     const { open, handler } = held()
     const { server, join } = robot({ echo: handler })
@@ -165,7 +165,7 @@ test('an app that closes its side, or sends what is no frame, is answered first'
   }
 })
 
-test('a broken frame is refused, and the next one is read', async () => {
+test('the frame after a broken one is read', async () => {
   const { server, join } = robot(echoes)
   const raw = join()
   const broken = framing.encode({ response: false, ...ask(1) }, new TextEncoder().encode('{}'), null)
@@ -197,7 +197,7 @@ test('no more requests are read than may be at work', async () => {
   assert.ok(server.counters().inFlightReached > 0)
 })
 
-test('an app that does not read its answers is not read either, and is closed in the end', async () => {
+test('an app that reads no responses is closed', async () => {
   let asked = 0
   const { server, join, clock } = robot(
     {
@@ -252,7 +252,7 @@ test('bytes that come one by one are no progress', async () => {
   assert.deepEqual(server.connections(), [])
 })
 
-test('useless frames cost their sender time, and nobody else', async () => {
+test('useless frames delay only their sender', async () => {
   const { server, join, clock } = robot(echoes)
   const [bad, good] = [join(), join()]
   for (let id = 0; id < 400; id++) await bad.send(ask(id, 999), '{}')
@@ -267,7 +267,7 @@ test('useless frames cost their sender time, and nobody else', async () => {
   assert.ok(server.counters().connectionsPaced > 0)
 })
 
-test('there are so many connections, and one over which nothing came gives way', async () => {
+test('at the limit, a silent connection gives way', async () => {
   const { server, join } = robot(echoes, { connectionsPerAddress: 2 })
   const [one, two] = [join(), join()]
   await two.send(ask(1), { text: '' })
@@ -285,7 +285,7 @@ test('there are so many connections, and one over which nothing came gives way',
   assert.deepEqual([connectionsDisplaced, connectionsRefused], [1, 1])
 })
 
-test('a report goes to one app or to all, and ends in each as it ends there', async () => {
+test('a report to one or all apps has an outcome for each', async () => {
   const { server, join, clock } = robot({})
   const [one, two] = [join(), join()]
   const push = server.push('all', moved, { metres: 1 })
@@ -334,7 +334,7 @@ test('a slow app loses its own oldest reports', async () => {
   assert.equal(server.counters().reportsDropped, 1)
 })
 
-test('a stream for one app reaches that app alone, or nobody', async () => {
+test('a stream for one app reaches no other', async () => {
   const { server, join, joinData } = robot({})
   assert.equal(await ends(server.sendStream('all', pictures, 1, new Uint8Array(2))), 0)
   const app = join()
@@ -357,7 +357,7 @@ test('a stream for one app reaches that app alone, or nobody', async () => {
   assert.equal((await ends(server.sendStream(data.connection, scans, 1, { metres: 'x' }))).kind, 'invalid_report')
 })
 
-test('frames of apps are taken in turn, and apps are not read while nobody takes them', async () => {
+test('frames of apps are taken in turn and apply back pressure', async () => {
   const { server, joinData } = robot({})
   const data = joinData()
   await data.send({ kind: KINDS.stream, code: 400, id: 1 }, Uint8Array.of(1))
@@ -373,7 +373,7 @@ test('frames of apps are taken in turn, and apps are not read while nobody takes
   assert.deepEqual(answers(data), [[99, 1]])
 })
 
-test('a shutdown answers what is being handled, and takes no longer than its grace', async () => {
+test('a shutdown answers running calls within its grace', async () => {
   const { open, handler } = held()
   const { server, join, clock } = robot({ echo: handler, go: handler })
   const raw = join()
@@ -398,7 +398,7 @@ test('a shutdown answers what is being handled, and takes no longer than its gra
   assert.equal(server.serve({ remote: '', close() {} }), null)
 })
 
-test('a body of many brackets, or of many values, is refused, and the robot goes on', async () => {
+test('bodies of many brackets or values are refused', async () => {
   const { server, join } = robot(echoes, { limits: { jsonValues: 1000 } })
   const raw = join()
   await raw.send(ask(1), `{"text":"","x":${'['.repeat(60_000)}`)
@@ -414,7 +414,7 @@ test('a body of many brackets, or of many values, is refused, and the robot goes
   assert.equal(server.counters().callsInvalid, 3)
 })
 
-test('apps connect from where they may, and call what they may from there', async () => {
+test('addresses limit connections and commands', async () => {
   const allow = [
     { network: '127.0.0.0/8', effects: ['read'] },
     { network: '10.1.0.0/16', effects: 'all' },
@@ -452,7 +452,7 @@ test('apps connect from where they may, and call what they may from there', asyn
   }
 })
 
-test('when memory is short, the connection that holds most goes', async () => {
+test('the connection with most memory is closed when it is short', async () => {
   const { open, handler } = held()
   const { server, join } = robot({ echo: handler }, { memory: 400_000 })
   const [small, large] = [join(), join()]

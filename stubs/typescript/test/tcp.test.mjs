@@ -49,7 +49,7 @@ async function proxy(context, port) {
   return { port: listener.address().port, cut }
 }
 
-test('a thousand calls at once, plain and compressed, each get their own answer', async (context) => {
+test('a thousand calls at once get their own responses', async (context) => {
   const robot = { getStation: (request) => ({ ...commands.getStation.responseExample(), extra: request.extra }) }
   const gzip = { fromBytes: 64 }
   const { app } = await both(context, robot, { client: { gzip, limits: { inFlight: 1000 } }, server: { gzip } })
@@ -133,7 +133,7 @@ test('a shutdown under load answers all that was begun', async (context) => {
   await assert.rejects(app.getRobotSn({}), (error) => error instanceof CallError && error.kind === 'closed')
 })
 
-test('a large picture arrives whole, in pieces on the way, compressed or not', async (context) => {
+test('a large picture arrives whole, compressed or not', async (context) => {
   for (const gzip of [null, {}]) {
     const { server, app } = await both(context, new ExampleRobot(), { server: { gzip } })
     const data = app.data()
@@ -147,7 +147,7 @@ test('a large picture arrives whole, in pieces on the way, compressed or not', a
   }
 })
 
-test('hostile apps harm nobody else', async (context) => {
+test('hostile apps harm no other app', async (context) => {
   const { server, app, ports } = await both(context, new ExampleRobot())
   const send = async (bytes) => {
     const socket = net.connect(ports.commandPort, LOCAL)

@@ -9,7 +9,7 @@ import { root } from './support.mjs'
 const folder = path.join(root, 'dist/types')
 const tsc = path.join(root, 'node_modules/.bin/tsc')
 
-test('a schema that is none of its type is refused by the compiler', () => {
+test('the compiler refuses a schema of another type', () => {
   rmSync(folder, { recursive: true, force: true })
   mkdirSync(folder, { recursive: true })
   const compilerOptions = { rootDir: path.join(root, 'test/types'), outDir: 'out', isolatedDeclarations: false }

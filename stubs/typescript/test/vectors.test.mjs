@@ -23,7 +23,7 @@ let accepted = 0
 let rejected = 0
 let encoded = 0
 
-test('bodies at the edges of JSON are judged as the rules say', () => {
+test('vectors at the edges of JSON follow the rules', () => {
   const { accepted: good, rejected: bad } = vectors.find(({ file }) => file === 'bodies.json')
   for (const { name, type, bytes, error = null } of [...good, ...bad]) {
     const report = readBody(bare, ofOneKey(type), 'request', bytesOf(bytes))

@@ -11,7 +11,7 @@ import { bodyOf, echo, framing, pipe, Raw, toy, wire } from './toy.mjs'
 
 const noise = (length) => Uint8Array.from({ length }, (_, index) => (index * 2654435761) >>> 13)
 
-test('MD5 is that of Node.js, at every length around its blocks', () => {
+test('MD5 agrees with Node.js around block lengths', () => {
   for (const length of [...Array(200).keys(), 4096, 100_001]) {
     const data = noise(length)
     assert.deepEqual(Buffer.from(md5(data)), createHash('md5').update(data).digest(), String(length))
@@ -22,7 +22,7 @@ test('MD5 is that of Node.js, at every length around its blocks', () => {
   )
 })
 
-test('gzip goes either way, and no further than its limit', async () => {
+test('gzip packs and unpacks up to its limit', async () => {
   for (const data of [new Uint8Array(), noise(10), new Uint8Array(1 << 20)]) {
     const packed = await webAlgorithms.gzip(data)
     assert.deepEqual(new Uint8Array(gunzipSync(packed)), data)
@@ -46,7 +46,7 @@ test('frames are the same with either, packed or not', async () => {
   assert.deepEqual((await web.open(framing.encode(id, data, 100))).data, data)
 })
 
-test('what inflates by too much is refused, unless it is a stream', async () => {
+test('a large inflation is refused except in a stream', async () => {
   const limits = { frameBytes: 1 << 20, inflatedBytes: 64 << 20, inflateRatio: 100 }
   for (const algorithms of [nodeAlgorithms, webAlgorithms]) {
     const strict = new Framing(wire.frame, limits, algorithms)

@@ -13,7 +13,7 @@ fn hover(editor: &mut Editor<'_>, path: &str, marked: &str) -> String {
 }
 
 #[test]
-fn keys_words_and_things_are_explained_in_both_languages() {
+fn hover_explains_in_both_languages() {
     let project = project();
     let mut editor = editor(&project);
     for (path, marked, parts) in [
@@ -173,7 +173,7 @@ fn a_name_leads_to_what_it_names() {
 }
 
 #[test]
-fn what_names_a_thing_is_found_in_all_files() {
+fn references_are_found_in_all_files() {
     let project = project();
     let mut editor = editor(&project);
     let ask = |editor: &mut Editor<'_>, path: &str, marked: &str, with_own: bool| {

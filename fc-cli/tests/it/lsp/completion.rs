@@ -19,7 +19,7 @@ fn offered(editor: &mut Editor<'_>, path: &str, old: &str, new: &str) -> Vec<Val
 }
 
 #[test]
-fn what_may_be_written_is_offered() {
+fn completion_offers_valid_words() {
     let project = project();
     let mut editor = editor(&project);
     for (path, old, new, wanted, unwanted) in [
@@ -160,7 +160,7 @@ reports:
 }
 
 #[test]
-fn what_is_chosen_makes_the_spec_right_again() {
+fn chosen_completion_repairs_the_spec() {
     let project = project();
     let mut editor = editor(&project);
     for (path, old, new, chosen, then) in [

@@ -32,7 +32,7 @@ fn faults_come_and_go_with_the_text() {
 }
 
 #[test]
-fn faults_and_their_fixes_speak_the_language_of_the_editor() {
+fn diagnostics_use_the_language_of_the_editor() {
     let project = project();
     let told = [
         ("zh-cn", "没有", "把 `unti` 改为 `unit`："),
@@ -78,7 +78,7 @@ fn a_change_in_one_file_shows_in_another() {
 }
 
 #[test]
-fn what_changes_on_the_disk_is_read_again() {
+fn changed_file_on_disk_is_read_again() {
     let project = project();
     let asks = json!({ "workspace": { "didChangeWatchedFiles": { "dynamicRegistration": true } } });
     let mut editor = Editor::with(&project, json!({ "capabilities": asks }));
@@ -207,7 +207,7 @@ fn every_fix_mends_its_fault() {
 }
 
 #[test]
-fn a_fault_of_several_places_is_fixed_at_each_or_at_all() {
+fn error_in_many_places_has_fixes_for_one_and_all() {
     let project = project();
     let mut editor = Editor::start(&project);
     editor.open(LAMP);
@@ -244,7 +244,7 @@ fn a_fault_of_several_places_is_fixed_at_each_or_at_all() {
 }
 
 #[test]
-fn what_leaves_no_choice_is_fixed_at_once() {
+fn fix_all_applies_certain_fixes() {
     let project = project();
     let mut editor = Editor::start(&project);
     editor.open(LAMP);

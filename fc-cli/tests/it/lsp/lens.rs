@@ -63,7 +63,7 @@ fn lenses_tell_of_codes_users_and_breaks() {
 }
 
 #[test]
-fn lenses_are_asked_for_again_when_a_check_has_found_other_things() {
+fn changed_check_refreshes_the_lenses() {
     let project = project();
     project
         .fc(&["release", "7", "--today", "2026-09-01"])

@@ -32,7 +32,7 @@ fn wire(value: &Value, sent: &mut Vec<String>) {
 }
 
 #[test]
-fn a_thing_is_renamed_wherever_it_is_named_and_what_is_sent_stays() {
+fn rename_changes_names_but_not_wire_keys() {
     for (path, marked, new, parts) in [
         // A type, from its own place and from another file's.
         (

@@ -7,7 +7,7 @@ use crate::lsp::{TYPES, project};
 use crate::support::{self, Project};
 
 #[test]
-fn what_no_client_should_say_ends_nothing() {
+fn invalid_messages_do_not_end_the_server() {
     let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
@@ -75,7 +75,7 @@ fn what_no_client_should_say_ends_nothing() {
 }
 
 #[test]
-fn many_changes_at_once_end_in_what_is_wrong_with_the_last() {
+fn last_of_many_changes_is_published() {
     let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
@@ -114,7 +114,7 @@ fn without_a_project_there_is_nothing_to_say() {
 
 /// Questions that are taken back, that a change overtakes, or that the end does: each has one answer.
 #[test]
-fn every_question_has_one_answer_whatever_comes_behind_it() {
+fn each_request_gets_one_answer() {
     let project = project();
     let mut editor = Editor::start(&project);
     editor.open(TYPES);

@@ -178,7 +178,7 @@ mod tests {
 
     /// An import takes precedence over the types of the package, so no type of a spec may have its name.
     #[test]
-    fn what_is_imported_is_kept_off_a_spec() {
+    fn imported_names_are_reserved() {
         for path in IMPORTED {
             let name = path.rsplit('.').next().unwrap_or_default();
             let is_type = name.starts_with(|first: char| first.is_ascii_uppercase());

@@ -37,7 +37,7 @@ fn shown(text: &str, width: usize) -> String {
 }
 
 #[test]
-fn prose_has_no_links_of_its_own() {
+fn prose_forms_no_links() {
     for (text, expected) in [
         ("a [b] <T> `[c] <T>`", r"a \[b\] \<T> `[c] <T>`"),
         ("见 https://a.example/x。完", "见 <https://a.example/x>。完"),
@@ -52,7 +52,7 @@ fn prose_has_no_links_of_its_own() {
 }
 
 #[test]
-fn code_stands_as_it_is() {
+fn code_is_unchanged() {
     assert_eq!(shown("a\n\n```\nx[0]\n```", 80), "a\n\n```text\nx[0]\n```");
     assert_eq!(shown("```json\n{}\n", 80), "```json\n{}\n```");
     assert_eq!(shown("a\n\n      b", 80), "a\n\n   b");
@@ -73,7 +73,7 @@ fn english_is_wrapped_and_chinese_is_not() {
 }
 
 #[test]
-fn a_text_that_needs_no_translation_stands_once() {
+fn equal_texts_appear_once() {
     let same = Text {
         zh: "MD5".into(),
         en: "MD5".into(),
@@ -87,7 +87,7 @@ fn a_text_that_needs_no_translation_stands_once() {
 }
 
 #[test]
-fn a_text_of_several_lines_is_a_paragraph_of_its_own() {
+fn text_of_several_lines_is_a_paragraph() {
     for (zh, en) in [
         ("站点\n编号", "Station"),
         ("站点", "1. Station"),

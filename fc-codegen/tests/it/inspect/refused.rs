@@ -19,7 +19,7 @@ fn named<'d>(dump: &'d mut serde_json::Value, list: &str, name: &str) -> &'d mut
 }
 
 #[test]
-fn what_is_no_dump_is_refused_with_a_reason() {
+fn invalid_dump_is_refused_with_a_reason() {
     let text = inspect::json(&good_spec::model());
     assert!(refused("[]").starts_with("not a dump of `fcproto inspect`: "));
     assert!(refused(&text[..text.len() / 2]).contains("EOF while parsing"));
@@ -133,7 +133,7 @@ fn a_dump_with_an_unknown_name_is_refused() {
 
 /// What is said of an operation, a type or a value, where there is no such thing.
 #[test]
-fn a_dump_that_names_what_is_not_there_is_refused() {
+fn dump_with_an_unknown_name_is_refused() {
     let text = inspect::json(&good_spec::model());
     let tied = |command: &str, report: &str| {
         let tie = json!({ "side": "request", "command": [command], "report": [report] });

@@ -43,7 +43,7 @@ fn round_trip_with_state_reused() {
 }
 
 #[fc_test::test]
-fn what_would_grow_is_left_plain() {
+fn incompressible_data_stays_plain() {
     let mut out = Vec::new();
     assert!(!Deflater::new(9).member(b"", &mut out));
     assert!(!Deflater::new(9).member(b"abc", &mut out));
@@ -55,7 +55,7 @@ fn what_would_grow_is_left_plain() {
 
 /// An interrupted compression stays in the state of zlib-rs and adds up until it panics.
 #[fc_test::test]
-fn what_stays_plain_leaves_nothing_behind() {
+fn plain_data_leaves_the_buffer_unchanged() {
     let noise: Vec<u8> = (0..7_u32).flat_map(|n| Md5::of(&n.to_le_bytes())).collect();
     for level in 0..=9 {
         let mut deflater = Deflater::new(level);

@@ -81,7 +81,7 @@ fn the_names_of_the_runtime_are_those_of_the_table() {
 }
 
 #[fc_test::test]
-fn the_names_in_the_vectors_are_among_those_of_the_table() {
+fn vectors_use_names_of_the_error_table() {
     let demanded = errors()
         .into_iter()
         .filter(|error| error.place != Place::Call && !error.own_limit);
@@ -102,7 +102,7 @@ fn the_names_in_the_vectors_are_among_those_of_the_table() {
 }
 
 #[fc_test::test]
-fn each_error_is_listed_once_and_explained_in_both_languages() {
+fn each_error_is_listed_and_explained_once() {
     let mut names = BTreeSet::new();
     for error in errors() {
         assert!(

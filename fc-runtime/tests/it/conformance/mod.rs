@@ -73,7 +73,7 @@ fn every_peer_script_holds() {
 }
 
 #[fc_test::test]
-fn every_script_has_a_name_of_its_own_and_says_in_a_sentence_what_it_demands() {
+fn scripts_have_distinct_names_and_a_summary() {
     let all = [Level::Session, Level::Peer].map(scripts);
     let mut names = BTreeSet::new();
     for (path, script) in all.iter().flatten() {

@@ -89,7 +89,7 @@ fn reads(file: &Value) -> bool {
 }
 
 #[fc_test::test]
-fn a_mistake_is_refused_by_the_schema_and_by_the_runner() {
+fn mistakes_are_refused_by_schema_and_runner() {
     let schema = schema("session.schema.json");
     let good = [
         json!({ "advance": 1 }),
@@ -150,7 +150,7 @@ fn a_peer_has_ids_of_its_protocol() {
 }
 
 #[fc_test::test]
-fn what_means_nothing_at_a_level_is_refused() {
+fn key_without_meaning_at_its_level_is_refused() {
     let of_peers = [
         json!({ "call": { "as": "a", "code": 1, "repeat": true } }),
         json!({ "report": { "as": "a", "code": 1, "repeat": true } }),
