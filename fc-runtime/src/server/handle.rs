@@ -3,7 +3,7 @@
 use super::connection_id::ConnectionId;
 use super::counters::ServerCounters;
 use super::data::{AppStreams, QUEUE};
-use super::push::{Acknowledgement, Audience, Push, PushError, Queued};
+use super::push::{Acknowledgement, Audience, Outcome, PushError, Queued};
 use super::shared::Shared;
 use crate::clock;
 use crate::frame::FrameId;
@@ -52,23 +52,25 @@ impl<P: Protocol> ServerHandle<P> {
         audience: Audience,
         report: &R,
     ) -> Result<Vec<Acknowledgement>, PushError> {
-        let push = self.queue(audience, report)?;
-        Ok(std::future::poll_fn(|cx| push.poll(cx)).await)
+        let outcomes = self.queue(audience, report)?.into_iter();
+        let ended: FuturesUnordered<_> = outcomes.map(Outcome::ended).collect();
+        Ok(ended.collect().await)
     }
 
-    fn queue<R: Report>(&self, audience: Audience, report: &R) -> Result<Arc<Push>, PushError> {
+    /// Queues a report for each app.
+    fn queue<R: Report>(&self, audience: Audience, report: &R) -> Result<Vec<Outcome>, PushError> {
         report.check().map_err(PushError::Invalid)?;
         let peers = self.shared.audience(audience)?;
         let envelope = P::Request::at(clock::unix_ms());
         let mut encoder = self.shared.settings.encoder::<P>();
         let body = encoder.prepare(|out| write_enveloped(&envelope, report, out))?;
         let policy = R::ACK.unwrap_or(P::DEFAULTS.ack);
-        let push = Arc::new(Push::default());
-        for peer in peers {
-            let ticket = push.ticket(peer.id);
-            peer.push(Queued::new(R::CODE, policy, body.clone(), ticket));
-        }
-        Ok(push)
+        let outcomes = peers.into_iter().map(|peer| {
+            let (queued, outcome) = Queued::new(R::CODE, policy, body.clone(), peer.id);
+            peer.push(queued);
+            outcome
+        });
+        Ok(outcomes.collect())
     }
 
     /// Sends a frame of raw bytes to the data connections of one app or of all apps. `code` is the stream, `id` the

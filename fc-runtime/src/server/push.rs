@@ -6,9 +6,7 @@ use crate::frame::{FrameError, Prepared};
 use crate::json::BodyError;
 use crate::operation::AckPolicy;
 use crate::refusal::Refusal;
-use crate::sync::{lock, register};
-use std::sync::{Arc, Mutex, MutexGuard};
-use std::task::{Context, Poll, Waker};
+use tokio::sync::oneshot;
 
 /// The receivers of a report or stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -87,98 +85,46 @@ pub(super) struct Queued {
     pub(super) body: Prepared,
     /// `None` before the report is queued.
     pub(super) charge: Option<Charge>,
-    ticket: Ticket,
+    outcome: oneshot::Sender<AckOutcome>,
 }
 
 impl Queued {
-    pub(super) fn new(code: u16, policy: AckPolicy, body: Prepared, ticket: Ticket) -> Self {
-        Self {
+    /// Returns the report, and its outcome at the app.
+    pub(super) fn new(
+        code: u16,
+        policy: AckPolicy,
+        body: Prepared,
+        connection: ConnectionId,
+    ) -> (Self, Outcome) {
+        let (outcome, ended) = oneshot::channel();
+        let queued = Self {
             code,
             policy,
             body,
             charge: None,
-            ticket,
-        }
-    }
-
-    pub(super) fn end(mut self, outcome: AckOutcome) {
-        self.ticket.settle(outcome);
-    }
-}
-
-/// The part of a push for one app. It ends as closed if it is dropped.
-#[derive(Debug)]
-pub(super) struct Ticket {
-    push: Arc<Push>,
-    connection: ConnectionId,
-    settled: bool,
-}
-
-impl Ticket {
-    fn settle(&mut self, outcome: AckOutcome) {
-        if self.settled {
-            return;
-        }
-        self.settled = true;
-        let waker = {
-            let mut state = self.push.lock();
-            state.open -= 1;
-            state.ended.push(Acknowledgement {
-                connection: self.connection,
-                outcome,
-            });
-            if state.open == 0 {
-                state.waker.take()
-            } else {
-                None
-            }
+            outcome,
         };
-        if let Some(waker) = waker {
-            waker.wake();
+        (queued, Outcome { connection, ended })
+    }
+
+    pub(super) fn end(self, outcome: AckOutcome) {
+        // The push may wait no longer.
+        let _ = self.outcome.send(outcome);
+    }
+}
+
+/// The outcome of a report at one app, once it has ended.
+pub(super) struct Outcome {
+    connection: ConnectionId,
+    ended: oneshot::Receiver<AckOutcome>,
+}
+
+impl Outcome {
+    /// Waits for the outcome. A report that is dropped ends as closed.
+    pub(super) async fn ended(self) -> Acknowledgement {
+        Acknowledgement {
+            connection: self.connection,
+            outcome: self.ended.await.unwrap_or(AckOutcome::Closed),
         }
-    }
-}
-
-impl Drop for Ticket {
-    fn drop(&mut self) {
-        self.settle(AckOutcome::Closed);
-    }
-}
-
-/// One report for any number of apps.
-#[derive(Debug, Default)]
-pub(super) struct Push {
-    state: Mutex<PushState>,
-}
-
-#[derive(Debug, Default)]
-struct PushState {
-    open: usize,
-    ended: Vec<Acknowledgement>,
-    waker: Option<Waker>,
-}
-
-impl Push {
-    pub(super) fn ticket(self: &Arc<Self>, connection: ConnectionId) -> Ticket {
-        self.lock().open += 1;
-        Ticket {
-            push: Arc::clone(self),
-            connection,
-            settled: false,
-        }
-    }
-
-    /// Ready when all tickets have ended.
-    pub(super) fn poll(&self, cx: &mut Context<'_>) -> Poll<Vec<Acknowledgement>> {
-        let mut state = self.lock();
-        if state.open == 0 {
-            return Poll::Ready(std::mem::take(&mut state.ended));
-        }
-        register(&mut state.waker, cx);
-        Poll::Pending
-    }
-
-    fn lock(&self) -> MutexGuard<'_, PushState> {
-        lock(&self.state)
     }
 }
