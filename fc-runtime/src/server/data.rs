@@ -285,23 +285,17 @@ impl<P: Protocol> DataPeer<P> {
         self.counters.stream_frames_in.increment();
         let inbox = lock(&self.inbox).clone();
         let mut charge = self.memory.queue_existing(frame.data.memory());
-        let taken = match inbox {
-            Some(inbox) => match inbox.reserve().await {
-                Ok(place) => {
-                    poll_fn(|cx| charge.poll_hand_over(cx)).await;
-                    place.send(AppStream {
-                        connection: self.id,
-                        peer: self.address,
-                        frame,
-                        charge: MemoryGuard(Some(charge)),
-                    });
-                    true
-                }
-                Err(_) => false,
-            },
-            None => false,
-        };
-        if !taken {
+        if let Some(inbox) = inbox
+            && let Ok(place) = inbox.reserve().await
+        {
+            poll_fn(|cx| charge.poll_hand_over(cx)).await;
+            place.send(AppStream {
+                connection: self.id,
+                peer: self.address,
+                frame,
+                charge: MemoryGuard(Some(charge)),
+            });
+        } else {
             self.counters.stream_frames_dropped.increment();
         }
     }

@@ -8,14 +8,6 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// The reason for the end of a handshake.
-enum Failed {
-    Late,
-    Broken(io::Error),
-    /// The connection was replaced, or the server ends.
-    Gone,
-}
-
 /// Waits for a handshake, for up to `limit` or until `gone`. A failed handshake is counted and logged, and returns
 /// `None`.
 pub(super) async fn shake<P: Protocol, S>(
@@ -27,17 +19,14 @@ pub(super) async fn shake<P: Protocol, S>(
 ) -> Option<S> {
     let shaken = tokio::select! {
         biased;
-        shaken = timeout(limit, handshake) => match shaken {
-            Ok(done) => done.map_err(Failed::Broken),
-            Err(_) => Err(Failed::Late),
-        },
-        () = gone => Err(Failed::Gone),
+        shaken = timeout(limit, handshake) => shaken,
+        // The connection was replaced, or the server ends.
+        () = gone => return None,
     };
     let why = match shaken {
-        Ok(stream) => return Some(stream),
-        Err(Failed::Gone) => return None,
-        Err(Failed::Late) => "it did not come in time".to_owned(),
-        Err(Failed::Broken(error)) => error.to_string(),
+        Ok(Ok(stream)) => return Some(stream),
+        Ok(Err(error)) => error.to_string(),
+        Err(_) => "it did not come in time".to_owned(),
     };
     counters.handshakes_failed.increment();
     if let Some(held) = counters.limiters.handshakes.admit() {
