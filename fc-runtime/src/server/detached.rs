@@ -3,7 +3,6 @@
 use super::budget::Charge;
 use super::running_handler::RunningHandler;
 use crate::sync::lock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll, ready};
 use tokio::runtime::Handle;
@@ -12,7 +11,8 @@ use tokio::task::JoinSet;
 /// The detached handlers of all connections of a server.
 pub(super) struct DetachedHandlers {
     limit: usize,
-    running: Arc<AtomicUsize>,
+    /// Cloned for each running handler.
+    running: Arc<()>,
     /// `None` after the end of the server.
     tasks: Mutex<Option<JoinSet<()>>>,
 }
@@ -31,7 +31,7 @@ impl DetachedHandlers {
     /// Returns `true` at the limit. No handler that might run on is started then, so that no started one must be
     /// dropped.
     pub(super) fn is_full(&self) -> bool {
-        self.limit > 0 && self.running.load(Ordering::Relaxed) >= self.limit
+        self.limit > 0 && Arc::strong_count(&self.running) > self.limit
     }
 
     /// Lets a handler run on in its own task to its end or to that of the server. Returns `false` if this is not
@@ -44,7 +44,7 @@ impl DetachedHandlers {
         if self.limit == 0 {
             return false;
         }
-        let count = RunningHandlerCount::take(&self.running);
+        let count = Arc::clone(&self.running);
         let task = async move {
             std::future::poll_fn(|cx| handler.poll(cx, false)).await;
             drop((handler, request, count));
@@ -77,21 +77,5 @@ impl DetachedHandlers {
 
     fn lock(&self) -> MutexGuard<'_, Option<JoinSet<()>>> {
         lock(&self.tasks)
-    }
-}
-
-/// Counts one running handler until it is dropped.
-struct RunningHandlerCount(Arc<AtomicUsize>);
-
-impl RunningHandlerCount {
-    fn take(running: &Arc<AtomicUsize>) -> Self {
-        running.fetch_add(1, Ordering::Relaxed);
-        Self(Arc::clone(running))
-    }
-}
-
-impl Drop for RunningHandlerCount {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
