@@ -52,34 +52,16 @@ impl Refusal {
         P::RESULTS.protocol.into()
     }
 
-    /// Creates the refusal of a command that this robot does not implement.
+    /// Creates a refusal with the protocol's error result and a reason.
     #[cfg(feature = "server")]
-    pub(crate) fn not_implemented<P: Protocol>() -> Self {
-        Self::with(P::RESULTS.protocol, "not implemented")
+    pub(crate) fn protocol<P: Protocol>(why: &str) -> Self {
+        Self::with(P::RESULTS.protocol, why)
     }
 
     /// Creates the refusal of a request that took too long.
     #[must_use]
     pub fn timeout<P: Protocol>() -> Self {
         P::RESULTS.timeout.into()
-    }
-
-    /// Creates the refusal after a panic of the handler. The progress of the command is unknown.
-    #[cfg(feature = "server")]
-    pub(crate) fn panicked<P: Protocol>() -> Self {
-        Self::with(P::RESULTS.protocol, "the handler panicked")
-    }
-
-    /// Creates the refusal of a command that was not started because too many handlers are running.
-    #[cfg(feature = "server")]
-    pub(crate) fn too_many<P: Protocol>() -> Self {
-        Self::with(P::RESULTS.protocol, "too many handlers are still at work")
-    }
-
-    /// Creates the refusal of a command that the app's address may not call.
-    #[cfg(feature = "server")]
-    pub(crate) fn forbidden<P: Protocol>() -> Self {
-        Self::with(P::RESULTS.protocol, "not allowed from this address")
     }
 
     fn with(result: ResultText, why: impl fmt::Display) -> Self {

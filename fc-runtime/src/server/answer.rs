@@ -203,7 +203,7 @@ impl<P: Protocol> Peer<P> {
 
     /// Refuses a request whose handler has panicked.
     pub(super) fn refuse_after_panic(&self, request: FrameId) {
-        self.refuse(request, &Refusal::panicked::<P>());
+        self.refuse(request, &Refusal::protocol::<P>("the handler panicked"));
     }
 
     /// Returns `true` if the app's address may call a command.
@@ -220,7 +220,8 @@ impl<P: Protocol> Peer<P> {
             let (effect, held) = (effect::<P>(code), held.shown());
             tracing::warn!(protocol, connection, %peer, name, code, ?effect, held, "refused: not allowed from this address");
         }
-        self.refuse(request, &Refusal::forbidden::<P>());
+        let why = "not allowed from this address";
+        self.refuse(request, &Refusal::protocol::<P>(why));
     }
 
     /// Refuses a request that is not started because too many handlers run on.
@@ -236,7 +237,8 @@ impl<P: Protocol> Peer<P> {
                 "too many abandoned handlers"
             );
         }
-        self.refuse(request, &Refusal::too_many::<P>());
+        let why = "too many handlers are still at work";
+        self.refuse(request, &Refusal::protocol::<P>(why));
     }
 
     /// Answers with one of the protocol's results.

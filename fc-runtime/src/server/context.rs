@@ -37,7 +37,7 @@ impl<P: Protocol> Context<P> {
     #[must_use]
     pub fn not_implemented(&self) -> Refusal {
         self.app.note_not_implemented(self.code);
-        Refusal::not_implemented::<P>()
+        Refusal::protocol::<P>("not implemented")
     }
 
     /// Returns `true` if the app no longer waits for the response: its connection has ended, or the handler timeout has
