@@ -27,6 +27,7 @@ use tokio::task::unconstrained;
 /// A connection to a robot's command port, like [`client::Connection`], with blocking methods.
 ///
 /// Clones are handles of the same connection.
+#[derive(Clone)]
 pub struct Connection<P: Protocol> {
     // Dropped before the thread that drives the connection.
     connection: client::Connection<P>,
@@ -99,15 +100,6 @@ impl<P: Protocol> Connection<P> {
     /// future may use the I/O and timers of tokio.
     pub fn wait<F: Future>(&self, future: F) -> F::Output {
         self.driver.wait(future)
-    }
-}
-
-impl<P: Protocol> Clone for Connection<P> {
-    fn clone(&self) -> Self {
-        Self {
-            connection: self.connection.clone(),
-            driver: Arc::clone(&self.driver),
-        }
     }
 }
 

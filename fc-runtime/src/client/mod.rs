@@ -59,6 +59,7 @@ use std::sync::Arc;
 /// After a loss the connection is made again, unless configured otherwise. Calls in the meantime wait within their
 /// timeout. Calls in flight with [`Effect::Read`](crate::Effect::Read) are sent again with the same id. Other calls in
 /// flight end with [`CallError::Lost`], because the robot may have acted.
+#[derive(Clone)]
 pub struct Connection<P: Protocol> {
     handle: Handle<P>,
 }
@@ -258,14 +259,6 @@ impl<P: Protocol> Connection<P> {
     /// when their queue is empty.
     pub fn close(&self) {
         self.handle.close();
-    }
-}
-
-impl<P: Protocol> Clone for Connection<P> {
-    fn clone(&self) -> Self {
-        Self {
-            handle: self.handle.clone(),
-        }
     }
 }
 

@@ -12,6 +12,7 @@ use std::time::Instant;
 use tokio::time::sleep_until;
 
 /// The context of a request for its handler.
+#[derive(Clone)]
 pub struct Context<P: Protocol> {
     /// Address of the app.
     pub peer: SocketAddr,
@@ -72,15 +73,6 @@ impl<P: Protocol> Context<P> {
         tokio::select! {
             () = self.app.gone() => {}
             () = sleep_until(self.deadline.into()) => {}
-        }
-    }
-}
-
-impl<P: Protocol> Clone for Context<P> {
-    fn clone(&self) -> Self {
-        Self {
-            app: Arc::clone(&self.app),
-            ..*self
         }
     }
 }

@@ -26,6 +26,7 @@ use tokio::sync::mpsc;
 use tokio::time::timeout;
 
 /// A handle of a server for reports, counters and shutdown. Cheap to clone.
+#[derive(Clone)]
 pub struct ServerHandle<P: Protocol> {
     shared: Arc<Shared<P>>,
 }
@@ -204,12 +205,6 @@ impl<P: Protocol> ServerHandle<P> {
     pub async fn shutdown(&self, grace: Duration) {
         self.shared.stop(after(clock::now(), grace));
         self.shared.over(pending()).await;
-    }
-}
-
-impl<P: Protocol> Clone for ServerHandle<P> {
-    fn clone(&self) -> Self {
-        Self::new(Arc::clone(&self.shared))
     }
 }
 

@@ -110,22 +110,13 @@ impl<P: Protocol, F: Future> Drop for Handler<P, F> {
 }
 
 /// The handlers of one connection that were not ready at once.
+#[derive(Default)]
 pub(super) struct Handlers<P: Protocol> {
     waiting: FuturesUnordered<Waiting<P>>,
     /// Memory of their requests, in bytes.
     weight: usize,
     /// `true` if a new handler has not been polled here yet.
     fresh: bool,
-}
-
-impl<P: Protocol> Default for Handlers<P> {
-    fn default() -> Self {
-        Self {
-            waiting: FuturesUnordered::new(),
-            weight: 0,
-            fresh: false,
-        }
-    }
 }
 
 impl<P: Protocol> Handlers<P> {
