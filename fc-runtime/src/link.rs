@@ -3,15 +3,15 @@
 use crate::frame::Decoder;
 use crate::protocol::Protocol;
 use socket2::{SockRef, TcpKeepalive};
+#[cfg(feature = "server")]
+use std::future::poll_fn;
 use std::io;
 #[cfg(feature = "server")]
 use std::mem::MaybeUninit;
 use std::pin::{Pin, pin};
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
-#[cfg(feature = "server")]
-use tokio::io::ReadBuf;
-use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite};
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 
 /// Longest time for a closing connection to send the rest and to receive the end of the stream.
@@ -101,17 +101,14 @@ impl Outlet {
         Pin::new(stream).poll_flush(cx)
     }
 
-    /// Writes everything, closes the sending side and waits for the peer to close its side.
-    pub(crate) async fn goodbye(
+    /// Writes everything and closes the sending side.
+    pub(crate) fn poll_close(
         &mut self,
-        stream: &mut (impl AsyncRead + AsyncWrite + Unpin),
-    ) -> io::Result<()> {
-        std::future::poll_fn(|cx| {
-            ready!(self.poll_write(stream, cx))?;
-            Pin::new(&mut *stream).poll_shutdown(cx)
-        })
-        .await?;
-        skip_to_end(stream).await
+        stream: &mut (impl AsyncWrite + Unpin),
+        cx: &mut Context<'_>,
+    ) -> Poll<io::Result<()>> {
+        ready!(self.poll_write(stream, cx))?;
+        Pin::new(stream).poll_shutdown(cx)
     }
 }
 
@@ -189,14 +186,23 @@ impl<S: Transport, P: Protocol> Link<S, P> {
 
     /// Writes everything, closes the sending side and waits for the peer to close its side.
     pub(crate) async fn goodbye(&mut self) -> io::Result<()> {
-        self.outlet.goodbye(&mut self.stream).await
+        poll_fn(|cx| self.outlet.poll_close(&mut self.stream, cx)).await?;
+        poll_fn(|cx| poll_skip_to_end(&mut self.stream, cx)).await
     }
 }
 
 /// Reads and drops everything up to the end. A socket that is closed with unread data is reset, and the peer then loses
 /// what it has not read yet.
-pub(crate) async fn skip_to_end(stream: &mut (impl AsyncRead + Unpin)) -> io::Result<()> {
-    let mut unread = [0; 4096];
-    while stream.read(&mut unread).await? > 0 {}
-    Ok(())
+pub(crate) fn poll_skip_to_end(
+    stream: &mut (impl AsyncRead + Unpin),
+    cx: &mut Context<'_>,
+) -> Poll<io::Result<()>> {
+    let mut room = [0; 4096];
+    loop {
+        let mut unread = ReadBuf::new(&mut room);
+        ready!(Pin::new(&mut *stream).poll_read(cx, &mut unread))?;
+        if unread.filled().is_empty() {
+            return Poll::Ready(Ok(()));
+        }
+    }
 }

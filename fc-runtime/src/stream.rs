@@ -10,13 +10,14 @@ use crate::frame::{Body, Decoder, FrameError, FrameId, LONG, Prepared};
 use crate::json::{Allowance, BodyError};
 #[cfg(feature = "server")]
 use crate::link::FIRST;
-use crate::link::skip_to_end;
+use crate::link::poll_skip_to_end;
 use crate::message::{Empty, read_enveloped};
 use crate::protocol::{Protocol, ResponseEnvelope};
 use crate::rate::{MinimumRate, RateMeter};
 use crate::refusal::Refusal;
 use crate::wire::Header;
 use std::fmt;
+use std::future::poll_fn;
 use std::io::{self, IoSlice};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
@@ -181,7 +182,7 @@ impl<R: AsyncRead + Unpin, P: Protocol> Receiver<R, P> {
 
     /// Reads and drops everything up to the end of the stream.
     pub(crate) async fn skip_to_end(&mut self) -> io::Result<()> {
-        skip_to_end(&mut self.read).await
+        poll_fn(|cx| poll_skip_to_end(&mut self.read, cx)).await
     }
 
     /// Returns the number of received bytes of the arriving frame, and its length if known.

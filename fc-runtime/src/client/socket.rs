@@ -2,15 +2,14 @@
 //! its request itself, without waiting for the driver.
 
 use crate::frame::Decoder;
-use crate::link::{Outlet, Transport, poll_read};
+use crate::link::{Outlet, Transport, poll_read, poll_skip_to_end};
 use crate::protocol::Protocol;
 use crate::sync::lock;
 use std::fmt;
+use std::future::poll_fn;
 use std::io;
-use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll};
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
 struct Socket<S> {
     stream: S,
@@ -87,44 +86,20 @@ impl<S: Transport> Shared<S> {
     }
 
     /// Writes everything, then `out`, closes the sending side and waits for the peer to close its side.
-    pub(super) async fn goodbye(mut self, mut out: Vec<u8>) -> io::Result<()> {
-        let (mut outlet, broken) = {
+    pub(super) async fn goodbye(self, mut out: Vec<u8>) -> io::Result<()> {
+        {
             let mut socket = self.lock();
-            (std::mem::take(&mut socket.outlet), socket.broken.take())
-        };
-        if let Some(error) = broken {
-            return Err(error);
+            if let Some(error) = socket.broken.take() {
+                return Err(error);
+            }
+            socket.outlet.load(&mut out);
         }
-        outlet.load(&mut out);
-        outlet.goodbye(&mut self).await
-    }
-}
-
-impl<S: AsyncRead + Unpin> AsyncRead for Shared<S> {
-    fn poll_read(
-        self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-        buf: &mut ReadBuf<'_>,
-    ) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.lock().stream).poll_read(cx, buf)
-    }
-}
-
-impl<S: AsyncWrite + Unpin> AsyncWrite for Shared<S> {
-    fn poll_write(
-        self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.lock().stream).poll_write(cx, bytes)
-    }
-
-    fn poll_flush(self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.lock().stream).poll_flush(cx)
-    }
-
-    fn poll_shutdown(self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.lock().stream).poll_shutdown(cx)
+        poll_fn(|cx| {
+            let Socket { stream, outlet, .. } = &mut *self.lock();
+            outlet.poll_close(stream, cx)
+        })
+        .await?;
+        poll_fn(|cx| poll_skip_to_end(&mut self.lock().stream, cx)).await
     }
 }
 
