@@ -36,17 +36,17 @@ pub trait Bounded {
 }
 
 macro_rules! bounded {
-    ($($number:ty)*) => {$(
+    ($wide:ty: $($number:ty)*) => {$(
         impl Bounded for $number {
             #[inline]
             fn all_within(&self, limit: Limit, wanted: Ordering) -> bool {
                 #[allow(
                     clippy::cast_precision_loss,
                     clippy::cast_lossless,
-                    reason = "a limit with a fraction is compared as a float"
+                    reason = "a float, or a limit with a fraction, is compared as a float"
                 )]
                 let order = match limit {
-                    Limit::Int(limit) => CompareInt::compare(*self, limit),
+                    Limit::Int(limit) => <$wide>::from(*self).partial_cmp(&(limit as $wide)),
                     Limit::Float(limit) => (*self as f64).partial_cmp(&limit),
                 };
                 order.is_some_and(|order| order == wanted || order == Ordering::Equal)
@@ -55,40 +55,8 @@ macro_rules! bounded {
     )*};
 }
 
-bounded!(i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
-
-/// Comparison of a number with an integer.
-trait CompareInt {
-    fn compare(self, limit: i128) -> Option<Ordering>;
-}
-
-macro_rules! compare_int {
-    ($($integer:ty)*) => {$(
-        impl CompareInt for $integer {
-            #[inline]
-            fn compare(self, limit: i128) -> Option<Ordering> {
-                i128::from(self).partial_cmp(&limit)
-            }
-        }
-    )*};
-}
-
-compare_int!(i8 i16 i32 i64 u8 u16 u32 u64);
-
-impl CompareInt for f64 {
-    #[inline]
-    fn compare(self, limit: i128) -> Option<Ordering> {
-        #[allow(clippy::cast_precision_loss, reason = "limits of floats are small")]
-        self.partial_cmp(&(limit as f64))
-    }
-}
-
-impl CompareInt for f32 {
-    #[inline]
-    fn compare(self, limit: i128) -> Option<Ordering> {
-        f64::from(self).compare(limit)
-    }
-}
+bounded!(i128: i8 i16 i32 i64 u8 u16 u32 u64);
+bounded!(f64: f32 f64);
 
 impl<T: Bounded> Bounded for Option<T> {
     #[inline]
