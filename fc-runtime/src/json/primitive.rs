@@ -2,39 +2,26 @@
 
 use super::{BodyError, BodyErrorKind, FromJson, Reader, ToJson, Writer};
 
-macro_rules! integers {
-    ($($integer:ty)*) => {$(
-        impl FromJson for $integer {
+macro_rules! scalars {
+    ($method:ident: $($scalar:ty)*) => {$(
+        impl FromJson for $scalar {
             #[inline]
             fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
-                reader.integer()
+                reader.$method()
             }
         }
 
-        impl ToJson for $integer {
+        impl ToJson for $scalar {
             #[inline]
             fn write(&self, writer: &mut Writer<'_>) {
-                writer.integer(*self);
+                writer.$method(*self);
             }
         }
     )*};
 }
 
-integers!(i8 i16 i32 i64 u8 u16 u32 u64);
-
-impl FromJson for bool {
-    #[inline]
-    fn read(reader: &mut Reader<'_>) -> Result<Self, BodyError> {
-        reader.bool()
-    }
-}
-
-impl ToJson for bool {
-    #[inline]
-    fn write(&self, writer: &mut Writer<'_>) {
-        writer.bool(*self);
-    }
-}
+scalars!(integer: i8 i16 i32 i64 u8 u16 u32 u64);
+scalars!(bool: bool);
 
 macro_rules! floats {
     ($($float:ident)*) => {$(
