@@ -144,8 +144,8 @@ impl<P: Protocol> Encoder<P> {
         frame.finished = true;
         let data = data..frame.out.len();
         if data.len() < LONG {
-            let sealed = sealed.digested::<P>(frame.out.get(data).unwrap_or_default());
-            sealed.write::<P>(frame.out, start, id);
+            let digest = DigestOf::<P>::of(frame.out.get(data).unwrap_or_default());
+            sealed.with(digest).write::<P>(frame.out, start, id);
             return Ok(None);
         }
         Ok(Some(Unsealed {
@@ -221,14 +221,9 @@ impl<P: Protocol> Encoder<P> {
     ) -> Result<(), FrameError> {
         let tail = body.tail(envelope);
         let data = body.text().len() + tail.text.len();
-        let sealed = Sealed {
-            digest: tail.digest,
-            ..self.sealed(P::PLAIN, data, data)?
-        };
-        let start = out.len();
+        let sealed = self.sealed(P::PLAIN, data, data)?.with(tail.digest);
         out.reserve(P::Header::LEN + data);
-        out.resize(start + P::Header::LEN, 0);
-        sealed.write::<P>(out, start, id);
+        sealed.append::<P>(out, id);
         out.extend_from_slice(body.text());
         out.extend_from_slice(&tail.text);
         Ok(())
@@ -237,7 +232,7 @@ impl<P: Protocol> Encoder<P> {
     /// Compresses and digests the bytes of `out` from `start` on, in place. Returns the values for the header.
     fn seal(&mut self, out: &mut Vec<u8>, start: usize) -> Result<Sealed, FrameError> {
         let sealed = self.pack(out, start)?;
-        Ok(sealed.digested::<P>(out.get(start..).unwrap_or_default()))
+        Ok(sealed.with(DigestOf::<P>::of(out.get(start..).unwrap_or_default())))
     }
 
     /// Compresses the bytes of `out` from `start` on, in place. Returns the values for the header without the digest.
@@ -290,11 +285,15 @@ struct Sealed {
 
 impl Sealed {
     /// Adds the digest of the data.
-    fn digested<P: Protocol>(self, data: &[u8]) -> Self {
-        Self {
-            digest: DigestOf::<P>::of(data),
-            ..self
-        }
+    fn with(self, digest: Sum) -> Self {
+        Self { digest, ..self }
+    }
+
+    /// Appends the header.
+    fn append<P: Protocol>(&self, out: &mut Vec<u8>, id: FrameId) {
+        let start = out.len();
+        out.resize(start + P::Header::LEN, 0);
+        self.write::<P>(out, start, id);
     }
 
     /// Writes the header into its placeholder at `start`.
@@ -327,9 +326,7 @@ impl Staged<'_> {
     /// Appends a frame with this body.
     pub(crate) fn append<P: Protocol>(&self, out: &mut Vec<u8>, id: FrameId) {
         out.reserve(P::Header::LEN + self.data.len());
-        let start = out.len();
-        out.resize(start + P::Header::LEN, 0);
-        self.sealed.write::<P>(out, start, id);
+        self.sealed.append::<P>(out, id);
         out.extend_from_slice(self.data);
     }
 }
@@ -352,9 +349,7 @@ impl Prepared {
 
     /// Appends the header of a frame with this body.
     pub(crate) fn header<P: Protocol>(&self, out: &mut Vec<u8>, id: FrameId) {
-        let start = out.len();
-        out.resize(start + P::Header::LEN, 0);
-        self.sealed.write::<P>(out, start, id);
+        self.sealed.append::<P>(out, id);
     }
 
     /// Returns the compressed body.
@@ -396,13 +391,7 @@ impl<P: Protocol> Preparing<P> {
     /// Returns the body after all bytes have been digested.
     pub(crate) fn finish(self) -> Prepared {
         let digest = self.digesting.finish(&self.data);
-        Prepared::new(
-            Sealed {
-                digest,
-                ..self.sealed
-            },
-            self.data,
-        )
+        Prepared::new(self.sealed.with(digest), self.data)
     }
 }
 
@@ -435,10 +424,7 @@ impl<P: Protocol> Unsealed<P> {
     /// Writes the header.
     pub(crate) fn seal(self, out: &mut [u8]) {
         let digest = (self.digesting).finish(out.get(self.data).unwrap_or_default());
-        let sealed = Sealed {
-            digest,
-            ..self.sealed
-        };
+        let sealed = self.sealed.with(digest);
         sealed.write::<P>(out, self.start, self.id);
     }
 }
