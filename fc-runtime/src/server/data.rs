@@ -130,10 +130,9 @@ impl Owner {
 }
 
 /// The shared part of a data connection. The connection ends when this is dropped and everything is sent.
-pub(super) struct DataEntry {
+pub(super) struct DataEntry<P> {
     pub(super) sender: mpsc::Sender<Outgoing>,
-    pub(super) memory: Arc<ConnectionMemory>,
-    pub(super) heard: Arc<AtomicBool>,
+    pub(super) peer: Arc<DataPeer<P>>,
     pub(super) owner: Owner,
     /// Ends the handshake when the entry is dropped.
     pub(super) _entered: oneshot::Sender<Infallible>,
@@ -150,46 +149,27 @@ pub(super) struct DataPeer<P> {
     pub(super) answers: mpsc::WeakSender<Outgoing>,
     pub(super) gate: Gate,
     pub(super) memory: Arc<ConnectionMemory>,
-    pub(super) eviction: Arc<Eviction<P>>,
+    /// Tells the connection to end at once.
+    pub(super) evicted: Notify,
     /// `true` if a frame has been received.
-    pub(super) heard: Arc<AtomicBool>,
+    pub(super) heard: AtomicBool,
+    pub(super) protocol: PhantomData<P>,
 }
 
-/// Tells a data connection to end at once.
-pub(super) struct Eviction<P> {
-    id: ConnectionId,
-    address: SocketAddr,
-    counters: Arc<Counters>,
-    told: Notify,
-    protocol: PhantomData<P>,
-}
-
-impl<P> Eviction<P> {
-    pub(super) fn new(id: ConnectionId, address: SocketAddr, counters: Arc<Counters>) -> Self {
-        Self {
-            id,
-            address,
-            counters,
-            told: Notify::new(),
-            protocol: PhantomData,
-        }
-    }
-}
-
-impl<P: Protocol> MemoryHolder for Eviction<P> {
+impl<P: Protocol> MemoryHolder for DataPeer<P> {
     /// Does nothing, because it keeps no unused memory.
     fn tidy(&self) {}
 
     fn evict(&self, held: usize) {
         self.counters
             .evicted::<P>(self.id, self.address, "data", held);
-        self.told.notify_one();
+        self.evicted.notify_one();
     }
 }
 
 impl<P: Protocol> DataPeer<P> {
     /// Serves the connection until it or `outbox` ends.
-    pub(super) async fn run<S: Transport>(self, stream: S, outbox: mpsc::Receiver<Outgoing>) {
+    pub(super) async fn run<S: Transport>(&self, stream: S, outbox: mpsc::Receiver<Outgoing>) {
         let (read, write) = tokio::io::split(stream);
         let patience = Patience {
             header: Some(self.settings.header_timeout),
@@ -209,7 +189,7 @@ impl<P: Protocol> DataPeer<P> {
                     error.name()
                 }
             },
-            () = self.eviction.told.notified() => NO_MEMORY,
+            () = self.evicted.notified() => NO_MEMORY,
         };
         self.memory.close();
         self.counters

@@ -1,11 +1,11 @@
 //! The state that all tasks of a server share: its connections, their limits, and the shutdown.
 
 use super::allow::Effects;
-use super::budget::{ConnectionMemory, MemoryBudget, MemoryHolder};
+use super::budget::{ConnectionMemory, MemoryBudget};
 use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counters;
-use super::data::{DataEntry, DataPeer, Eviction, Inbox, Outgoing, Owner, QUEUE};
+use super::data::{DataEntry, DataPeer, Inbox, Outgoing, Owner, QUEUE};
 use super::detached::DetachedHandlers;
 use super::driver::Driver;
 use super::gate::Gate;
@@ -23,12 +23,13 @@ use std::cell::OnceCell;
 use std::collections::HashSet;
 use std::future::poll_fn;
 use std::io;
+use std::marker::PhantomData;
 use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, Weak};
 use std::time::Instant;
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{Notify, mpsc, oneshot, watch};
 use tokio::task::JoinSet;
 use tokio::time::sleep_until;
 
@@ -47,7 +48,7 @@ pub(super) struct Shared<P: Protocol> {
     service: Arc<dyn Service<P>>,
     pub(super) counters: Arc<Counters>,
     pub(super) peers: Mutex<Table<Arc<Peer<P>>>>,
-    data_peers: Mutex<Table<DataEntry>>,
+    data_peers: Mutex<Table<DataEntry<P>>>,
     pub(super) inbox: Arc<Inbox>,
     detached: Arc<DetachedHandlers>,
     gate: Gate,
@@ -138,14 +139,7 @@ impl<P: Protocol> Shared<P> {
         let id = self.next_id();
         let (sender, outbox) = mpsc::channel(QUEUE);
         let (entered, left) = oneshot::channel();
-        let heard = Arc::new(AtomicBool::new(false));
-        let eviction = Arc::new(Eviction::new(id, address, Arc::clone(&self.counters)));
-        let holder: Weak<dyn MemoryHolder> = Arc::<Eviction<P>>::downgrade(&eviction);
-        let memory = Arc::new(self.budget.open(id, holder));
-        let peer = DataPeer {
-            memory: Arc::clone(&memory),
-            eviction,
-            heard: Arc::clone(&heard),
+        let peer = Arc::new_cyclic(|peer: &Weak<DataPeer<P>>| DataPeer {
             id,
             address,
             settings: Arc::clone(&self.settings),
@@ -153,20 +147,22 @@ impl<P: Protocol> Shared<P> {
             inbox: Arc::clone(&self.inbox),
             answers: sender.downgrade(),
             gate: self.gate.clone(),
-        };
+            memory: Arc::new(self.budget.open(id, peer.clone())),
+            evicted: Notify::new(),
+            heard: AtomicBool::new(false),
+            protocol: PhantomData,
+        });
         // An app that only receives is known by its command connection. The list is created once, and only if there are
         // too many connections.
         let speakers = OnceCell::new();
-        let silent = |from: IpAddr, data: &DataEntry| {
-            !data.heard.load(Ordering::Relaxed)
+        let silent = |from: IpAddr, data: &DataEntry<P>| {
+            !data.peer.heard.load(Ordering::Relaxed)
                 && !speakers.get_or_init(|| self.speakers()).contains(&from)
         };
-        let owner = Owner::Nobody;
         let entry = DataEntry {
             sender,
-            memory,
-            heard,
-            owner,
+            peer: Arc::clone(&peer),
+            owner: Owner::Nobody,
             _entered: entered,
         };
         // A replaced connection ends when its entry is dropped.
@@ -384,7 +380,7 @@ impl<P: Protocol> Shared<P> {
             .values()
             .filter(|data| data.owner == Owner::One(id));
         let own: Vec<_> = own.map(Outbox::of).collect();
-        let anybodys = |(_, address, data): (_, _, &DataEntry)| {
+        let anybodys = |(_, address, data): (_, _, &DataEntry<P>)| {
             host == Some(address) && data.owner == Owner::Several
         };
         if !own.is_empty() {
@@ -404,10 +400,10 @@ pub(super) struct Outbox {
 }
 
 impl Outbox {
-    fn of(data: &DataEntry) -> Self {
+    fn of<P>(data: &DataEntry<P>) -> Self {
         Self {
             sender: data.sender.clone(),
-            memory: Arc::clone(&data.memory),
+            memory: Arc::clone(&data.peer.memory),
         }
     }
 
