@@ -288,6 +288,37 @@ pub fn signed(input: ParseStream<'_>) -> syn::Result<Number> {
     })
 }
 
+/// An integer or a string, as written.
+pub struct Scalar {
+    /// Tokens as written.
+    pub tokens: TokenStream,
+    /// Decimal digits, or the content of the string.
+    pub text: String,
+    /// `None` for a string.
+    pub number: Option<i128>,
+}
+
+/// Reads `6` or `"night"`. A decimal fraction is an error with the text `expected`.
+pub fn scalar(input: ParseStream<'_>, expected: &str) -> syn::Result<Scalar> {
+    if input.peek(LitStr) {
+        let literal: LitStr = input.parse()?;
+        return Ok(Scalar {
+            text: literal.value(),
+            tokens: literal.into_token_stream(),
+            number: None,
+        });
+    }
+    let Number { tokens, value } = signed(input)?;
+    match value {
+        NumberValue::Int(number) => Ok(Scalar {
+            tokens,
+            text: number.to_string(),
+            number: Some(number),
+        }),
+        NumberValue::Float(_) => Err(syn::Error::new_spanned(tokens, expected)),
+    }
+}
+
 /// Reads `first..=last` of `T`.
 pub fn range<T>(input: ParseStream<'_>) -> syn::Result<(T, T)>
 where

@@ -1,7 +1,7 @@
 //! `when(…)` and `unless(…)`: fields that are present only under conditions on other fields.
 
 use super::ast::{Field, Message};
-use crate::attr::{self, NumberValue};
+use crate::attr;
 use crate::errors::Errors;
 use crate::new::optional;
 use crate::span::{generated, span_of};
@@ -9,7 +9,7 @@ use proc_macro2::TokenStream;
 use quote::{ToTokens as _, quote, quote_spanned};
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
-use syn::{Ident, LitBool, LitStr, Token};
+use syn::{Ident, LitBool, Token};
 
 /// One field in a condition.
 pub struct Asked {
@@ -42,13 +42,6 @@ fn read_asked(input: ParseStream<'_>) -> syn::Result<Asked> {
 }
 
 fn read_wanted(input: ParseStream<'_>) -> syn::Result<Wanted> {
-    if input.peek(LitStr) {
-        let literal: LitStr = input.parse()?;
-        return Ok(Wanted {
-            text: format!("{:?}", literal.value()),
-            tokens: literal.into_token_stream(),
-        });
-    }
     if input.peek(LitBool) {
         let literal: LitBool = input.parse()?;
         return Ok(Wanted {
@@ -56,17 +49,14 @@ fn read_wanted(input: ParseStream<'_>) -> syn::Result<Wanted> {
             tokens: literal.into_token_stream(),
         });
     }
-    let number = attr::signed(input)?;
-    match number.value {
-        NumberValue::Int(value) => Ok(Wanted {
-            text: value.to_string(),
-            tokens: number.tokens,
-        }),
-        NumberValue::Float(_) => {
-            let message = "expected an integer, a string or a bool";
-            Err(syn::Error::new_spanned(number.tokens, message))
-        }
-    }
+    let value = attr::scalar(input, "expected an integer, a string or a bool")?;
+    Ok(Wanted {
+        text: match value.number {
+            Some(_) => value.text,
+            None => format!("{:?}", value.text),
+        },
+        tokens: value.tokens,
+    })
 }
 
 /// Reports invalid conditions and fields that cannot have one.

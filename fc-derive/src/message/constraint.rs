@@ -5,7 +5,7 @@ use crate::attr::{self, Item, Number, NumberValue, Slot};
 use crate::errors::Errors;
 use crate::span::generated;
 use proc_macro2::{Literal, TokenStream};
-use quote::{ToTokens as _, format_ident, quote};
+use quote::{format_ident, quote};
 use syn::parse::ParseStream;
 use syn::{Ident, LitInt, LitStr, Path, Token};
 
@@ -119,20 +119,8 @@ fn pattern(input: ParseStream<'_>) -> syn::Result<LitStr> {
 
 /// Reads `(1, 6)` or `("day", "night")`.
 fn wire_values(input: ParseStream<'_>) -> syn::Result<Vec<TokenStream>> {
-    attr::listed(input, "expected a value of the enum", wire_value)
-}
-
-/// Reads `6` or `"night"`.
-fn wire_value(input: ParseStream<'_>) -> syn::Result<TokenStream> {
-    if input.peek(LitStr) {
-        return Ok(input.parse::<LitStr>()?.into_token_stream());
-    }
-    let number = attr::signed(input)?;
-    match number.value {
-        NumberValue::Int(_) => Ok(number.tokens),
-        NumberValue::Float(_) => {
-            let message = "expected an integer or a string";
-            Err(syn::Error::new_spanned(number.tokens, message))
-        }
-    }
+    attr::listed(input, "expected a value of the enum", |input| {
+        let value = attr::scalar(input, "expected an integer or a string")?;
+        Ok(value.tokens)
+    })
 }

@@ -1,13 +1,12 @@
 //! An enum of values with its attributes.
 
-use crate::attr::{self, Item, Slot};
+use crate::attr::{self, Item, Scalar, Slot};
 use crate::errors::Errors;
 use crate::item;
-use proc_macro2::TokenStream;
 use quote::ToTokens as _;
 use std::collections::HashSet;
 use syn::parse::{Parse as _, ParseStream};
-use syn::{DeriveInput, Fields, Ident, LitStr, Path, Token, Type, Variant};
+use syn::{DeriveInput, Fields, Ident, Path, Token, Type, Variant};
 
 /// An enum with `#[derive(OpenEnum)]`.
 pub struct OpenEnum<'a> {
@@ -20,7 +19,7 @@ pub struct OpenEnum<'a> {
     /// The order of values.
     pub order: Option<Order>,
     /// Variants with a value, as written.
-    pub values: Vec<(&'a Ident, Value)>,
+    pub values: Vec<(&'a Ident, Scalar)>,
     /// States of the variants with a value, in the same order.
     pub states: Vec<State>,
     /// Variants that keep an unknown value; at most one is allowed.
@@ -53,16 +52,6 @@ pub enum Repr {
     Int(Ident, i128, i128),
     /// A string.
     Str,
-}
-
-/// The value of a variant, as written.
-pub struct Value {
-    /// Tokens as written.
-    pub tokens: TokenStream,
-    /// Unique text of the value.
-    identity: String,
-    /// `None` for a string.
-    number: Option<i128>,
 }
 
 impl<'a> OpenEnum<'a> {
@@ -194,7 +183,7 @@ impl<'a> OpenEnum<'a> {
         }
         let mut seen = HashSet::new();
         for (_, value) in &self.values {
-            if !seen.insert(&value.identity) {
+            if !seen.insert(&value.text) {
                 errors.on(&value.tokens, "another variant has this value");
             }
         }
@@ -202,7 +191,7 @@ impl<'a> OpenEnum<'a> {
 }
 
 impl Repr {
-    fn check(&self, value: &Value, errors: &mut Errors) {
+    fn check(&self, value: &Scalar, errors: &mut Errors) {
         let message = match (self, value.number) {
             (Self::Str, None) => return,
             (Self::Str, Some(_)) => "the value must be a string, as `repr` says".to_owned(),
@@ -258,25 +247,7 @@ fn read_names(input: ParseStream<'_>) -> syn::Result<Vec<Ident>> {
 }
 
 /// Reads `= 4` or `= "gate"`.
-fn read_value(input: ParseStream<'_>) -> syn::Result<Value> {
-    if input.peek2(LitStr) {
-        let literal = attr::text(input)?;
-        return Ok(Value {
-            identity: literal.value(),
-            tokens: literal.into_token_stream(),
-            number: None,
-        });
-    }
-    let number = attr::number(input)?;
-    match number.value {
-        attr::NumberValue::Int(value) => Ok(Value {
-            tokens: number.tokens,
-            identity: value.to_string(),
-            number: Some(value),
-        }),
-        attr::NumberValue::Float(_) => Err(syn::Error::new_spanned(
-            number.tokens,
-            "expected an integer or a string",
-        )),
-    }
+fn read_value(input: ParseStream<'_>) -> syn::Result<Scalar> {
+    input.parse::<Token![=]>()?;
+    attr::scalar(input, "expected an integer or a string")
 }
