@@ -6,7 +6,7 @@ use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::quote_spanned;
-use syn::{Data, DeriveInput, Fields, Ident, Path, Type};
+use syn::{Data, DeriveInput, Ident, Path, Type};
 
 /// Inner types of an id besides `String`.
 const INTEGERS: [&str; 8] = ["i8", "i16", "i32", "i64", "u8", "u16", "u32", "u64"];
@@ -35,35 +35,19 @@ fn held<'a>(input: &'a DeriveInput, errors: &mut Errors) -> Option<Held<'a>> {
         errors.on(&input.generics, "an id has no parameters");
         return None;
     }
-    let fields = match &input.data {
-        Data::Struct(data) => match &data.fields {
-            Fields::Unnamed(fields) => &fields.unnamed,
-            Fields::Named(_) | Fields::Unit => {
-                errors.on(&input.ident, WANTED);
-                return None;
-            }
-        },
-        Data::Enum(_) | Data::Union(_) => {
-            errors.on(&input.ident, WANTED);
-            return None;
-        }
+    let payload = match &input.data {
+        Data::Struct(data) => item::payload(&data.fields),
+        Data::Enum(_) | Data::Union(_) => None,
     };
-    let mut fields = fields.iter();
-    let (Some(field), None) = (fields.next(), fields.next()) else {
+    let Some(ty) = payload else {
         errors.on(&input.ident, WANTED);
         return None;
     };
-    let last = match &field.ty {
-        Type::Path(path) => path.path.segments.last(),
-        _ => None,
-    };
-    match last {
-        Some(last) if INTEGERS.iter().any(|integer| last.ident == integer) => {
-            Some(Held::Integer(&field.ty))
-        }
-        Some(last) if last.ident == "String" => Some(Held::Text(&field.ty)),
+    match item::last_name(ty) {
+        Some(name) if INTEGERS.iter().any(|integer| name == integer) => Some(Held::Integer(ty)),
+        Some(name) if name == "String" => Some(Held::Text(ty)),
         _ => {
-            errors.on(&field.ty, WANTED);
+            errors.on(ty, WANTED);
             None
         }
     }

@@ -3,8 +3,9 @@
 use crate::attr::{self, ItemReader, Slot};
 use crate::errors::Errors;
 use proc_macro2::TokenStream;
+use quote::ToTokens;
 use syn::punctuated::Punctuated;
-use syn::{Data, DeriveInput, Fields, Generics, Path, Token, Variant};
+use syn::{Data, DeriveInput, Fields, Generics, Ident, Path, Token, Type, Variant};
 
 /// The expansion of an item, with its errors.
 pub type Expand = fn(&DeriveInput, Errors) -> TokenStream;
@@ -88,4 +89,42 @@ pub fn named_fields<'a>(
         Some(Fields::Unit) | None => {}
     }
     Vec::new()
+}
+
+/// Returns the type that a tuple of one field holds.
+pub fn payload(fields: &Fields) -> Option<&Type> {
+    let mut types = match fields {
+        Fields::Unnamed(fields) => fields.unnamed.iter().map(|field| &field.ty),
+        Fields::Named(_) | Fields::Unit => return None,
+    };
+    types.next().filter(|_| types.next().is_none())
+}
+
+/// Returns the payload of a variant. Reports a variant that does not hold exactly one value with `message`.
+pub fn variant_payload<'a>(
+    variant: &'a Variant,
+    errors: &mut Errors,
+    message: &str,
+) -> Option<&'a Type> {
+    let payload = payload(&variant.fields);
+    if payload.is_none() {
+        errors.on(place(variant), message);
+    }
+    payload
+}
+
+/// Returns the position of what a variant holds.
+pub fn place(variant: &Variant) -> &dyn ToTokens {
+    match &variant.fields {
+        Fields::Unit => &variant.ident,
+        fields => fields,
+    }
+}
+
+/// Returns the last name of a type's path.
+pub fn last_name(ty: &Type) -> Option<&Ident> {
+    match ty {
+        Type::Path(path) => path.path.segments.last().map(|segment| &segment.ident),
+        _ => None,
+    }
 }

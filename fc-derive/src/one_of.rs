@@ -7,7 +7,7 @@ use crate::json::{self, Bodies};
 use crate::span::span_of;
 use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens as _, quote, quote_spanned};
-use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
+use syn::{DeriveInput, Ident, Path, Type, Variant};
 
 /// Writes the implementations, or errors and stubs.
 pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
@@ -40,17 +40,9 @@ fn read_variant<'a>(variant: &'a Variant, errors: &mut Errors) -> Option<(&'a Id
     attr::read(&variant.attrs, errors, "a choice's variant", &mut |_, _| {
         Ok(Item::Unknown)
     });
-    if let Fields::Unnamed(fields) = &variant.fields
-        && let (1, Some(field)) = (fields.unnamed.len(), fields.unnamed.first())
-    {
-        return Some((&variant.ident, &field.ty));
-    }
-    let place = match &variant.fields {
-        Fields::Unit => variant.ident.to_token_stream(),
-        fields => fields.to_token_stream(),
-    };
-    errors.on(&place, "each variant holds one message");
-    None
+    let message = "each variant holds one message";
+    let payload = item::variant_payload(variant, errors, message)?;
+    Some((&variant.ident, payload))
 }
 
 fn code(ident: &Ident, runtime: &Path, variants: &[(&Ident, &Type)]) -> TokenStream {

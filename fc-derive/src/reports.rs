@@ -6,8 +6,8 @@ use crate::errors::Errors;
 use crate::item;
 use crate::span::span_of;
 use proc_macro2::TokenStream;
-use quote::{ToTokens as _, quote, quote_spanned};
-use syn::{DeriveInput, Fields, Ident, Path, Type, Variant};
+use quote::{quote, quote_spanned};
+use syn::{DeriveInput, Ident, Path, Type, Variant};
 
 /// Writes `from_raw`, or errors.
 pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
@@ -62,19 +62,11 @@ impl<'a> Reports<'a> {
                 }
             },
         );
-        let field = match &variant.fields {
-            Fields::Unnamed(fields) if fields.unnamed.len() == 1 => fields.unnamed.first(),
-            _ => None,
-        };
-        let Some(field) = field else {
-            let place = match &variant.fields {
-                Fields::Unit => variant.ident.to_token_stream(),
-                fields => fields.to_token_stream(),
-            };
-            errors.on(&place, "each variant holds one report");
+        let message = "each variant holds one report";
+        let Some(payload) = item::variant_payload(variant, errors, message) else {
             return;
         };
-        let report = (&variant.ident, &field.ty);
+        let report = (&variant.ident, payload);
         match (unknown.key(), self.unknown) {
             (None, _) => self.typed.push(report),
             (Some(_), None) => self.unknown = Some(report),

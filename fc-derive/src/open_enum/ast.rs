@@ -3,10 +3,10 @@
 use crate::attr::{self, Item, Scalar, Slot};
 use crate::errors::Errors;
 use crate::item;
-use quote::ToTokens as _;
+use quote::ToTokens;
 use std::collections::HashSet;
 use syn::parse::{Parse as _, ParseStream};
-use syn::{DeriveInput, Fields, Ident, Path, Token, Type, Variant};
+use syn::{DeriveInput, Fields, Ident, Path, Token, Variant};
 
 /// An enum with `#[derive(OpenEnum)]`.
 pub struct OpenEnum<'a> {
@@ -146,20 +146,15 @@ impl<'a> OpenEnum<'a> {
             Repr::Int(int, ..) => int.to_string(),
             Repr::Str => "String".to_owned(),
         };
-        let misplaced = match &variant.fields {
-            Fields::Unnamed(fields) if fields.unnamed.len() == 1 => {
-                let ty = fields.unnamed.first().map(|field| &field.ty);
-                let right = ty.is_some_and(|ty| last_name(ty).is_some_and(|name| *name == wanted));
-                (!right).then(|| ty.to_token_stream())
-            }
-            Fields::Unit => Some(variant.ident.to_token_stream()),
-            fields => Some(fields.to_token_stream()),
-        };
-        if let Some(place) = misplaced
-            && readable
-        {
+        let payload = item::payload(&variant.fields);
+        let name = payload.and_then(item::last_name);
+        if readable && name.is_none_or(|name| *name != wanted) {
+            let place: &dyn ToTokens = match payload {
+                Some(ty) => ty,
+                None => item::place(variant),
+            };
             errors.on(
-                &place,
+                place,
                 format!("the variant `other` holds the value: `({wanted})`"),
             );
         }
@@ -202,14 +197,6 @@ impl Repr {
             }
         };
         errors.on(&value.tokens, message);
-    }
-}
-
-/// Returns the last name of a type's path.
-fn last_name(ty: &Type) -> Option<&Ident> {
-    match ty {
-        Type::Path(path) => path.path.segments.last().map(|segment| &segment.ident),
-        _ => None,
     }
 }
 
