@@ -2,9 +2,9 @@
 
 use crate::errors::Errors;
 use proc_macro2::{Span, TokenStream, TokenTree};
-use quote::ToTokens;
+use quote::{ToTokens, quote};
 use syn::ext::IdentExt as _;
-use syn::parse::ParseStream;
+use syn::parse::{Parse, ParseStream};
 use syn::{Attribute, Ident, LitFloat, LitInt, LitStr, Path, Token, parenthesized, parse_quote};
 
 /// Name of the attribute.
@@ -35,6 +35,24 @@ pub fn read(attributes: &[Attribute], errors: &mut Errors, place: &str, item: &m
             errors.ok(result);
         }
     }
+}
+
+/// Reads a key with `value`. Another derive reads all other keys and reports unknown ones.
+pub fn read_own<T>(
+    attributes: &[Attribute],
+    errors: &mut Errors,
+    own: &str,
+    value: fn(ParseStream<'_>) -> syn::Result<T>,
+) -> Slot<T> {
+    let mut slot = Slot::default();
+    read(attributes, errors, "a field", &mut |key, input| {
+        if key == own {
+            slot.set(key, value(input))
+        } else {
+            Ok(Item::Foreign)
+        }
+    });
+    slot
 }
 
 /// Reads the keys of one attribute.
@@ -160,10 +178,15 @@ fn read_list(
     Ok(())
 }
 
-/// Reads `= "text"`.
-pub fn text(input: ParseStream<'_>) -> syn::Result<LitStr> {
+/// Reads `= value`.
+pub fn value<T: Parse>(input: ParseStream<'_>) -> syn::Result<T> {
     input.parse::<Token![=]>()?;
     input.parse()
+}
+
+/// Reads `= "text"`.
+pub fn text(input: ParseStream<'_>) -> syn::Result<LitStr> {
+    value(input)
 }
 
 /// Reads `= path`.
@@ -176,10 +199,8 @@ pub fn path(input: ParseStream<'_>) -> syn::Result<Path> {
 pub fn word<T: Copy>(input: ParseStream<'_>, words: &[(&str, T)]) -> syn::Result<(LitStr, T)> {
     let literal = text(input)?;
     let given = literal.value();
-    for (name, value) in words {
-        if *name == given {
-            return Ok((literal, *value));
-        }
+    if let Some((_, value)) = words.iter().find(|(name, _)| *name == given) {
+        return Ok((literal, *value));
     }
     let names: Vec<String> = words.iter().map(|(name, _)| format!("{name:?}")).collect();
     let message = format!("expected {}", names.join(" or "));
@@ -192,8 +213,7 @@ where
     T: std::str::FromStr,
     T::Err: std::fmt::Display,
 {
-    input.parse::<Token![=]>()?;
-    plain_integer(&input.parse()?)
+    plain_integer(&value(input)?)
 }
 
 /// Returns the value of a literal without suffix.
@@ -266,9 +286,7 @@ pub fn signed(input: ParseStream<'_>) -> syn::Result<Number> {
         no_suffix(&literal, literal.suffix())?;
         let value: f64 = literal.base10_parse()?;
         return Ok(Number {
-            tokens: [minus.to_token_stream(), literal.to_token_stream()]
-                .into_iter()
-                .collect(),
+            tokens: quote!(#minus #literal),
             value: NumberValue::Float(if minus.is_some() { -value } else { value }),
         });
     }
@@ -281,9 +299,7 @@ pub fn signed(input: ParseStream<'_>) -> syn::Result<Number> {
         .parse()
         .map_err(|error| syn::Error::new_spanned(&literal, error))?;
     Ok(Number {
-        tokens: [minus.to_token_stream(), literal.to_token_stream()]
-            .into_iter()
-            .collect(),
+        tokens: quote!(#minus #literal),
         value: NumberValue::Int(value),
     })
 }

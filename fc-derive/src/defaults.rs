@@ -7,8 +7,7 @@ use crate::span::span_of;
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 use syn::ext::IdentExt as _;
-use syn::parse::ParseStream;
-use syn::{Data, DeriveInput, Expr, Fields, Ident, Token, Type};
+use syn::{Data, DeriveInput, Expr, Fields, Ident, Type};
 
 /// Writes a constant and an accessor for each default, or errors.
 pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
@@ -43,7 +42,7 @@ impl<'a> Defaulted<'a> {
         attr::read(&field.attrs, errors, "a field", &mut |key, input| {
             if key == "default" {
                 at = Some(key.span());
-                return default.set(key, expression(input));
+                return default.set(key, attr::value::<Expr>(input));
             }
             // `Message` reads all other keys and reports unknown ones.
             Ok(Item::Foreign)
@@ -99,12 +98,6 @@ impl<'a> Defaulted<'a> {
             }
         }
     }
-}
-
-/// Reads `= Mood::Calm`.
-fn expression(input: ParseStream<'_>) -> syn::Result<Expr> {
-    input.parse::<Token![=]>()?;
-    input.parse()
 }
 
 fn is_string(ty: &Type) -> bool {

@@ -79,19 +79,7 @@ impl<'a> Envelope<'a> {
 
     fn add(&mut self, field: &'a Field, errors: &mut Errors) {
         let Some(ident) = &field.ident else { return };
-        let mut role = Slot::default();
-        attr::read(
-            &field.attrs,
-            errors,
-            "an envelope's field",
-            &mut |key, input| {
-                if key == "role" {
-                    return role.set(key, read_role(input));
-                }
-                // `Message` reads all other keys and reports unknown ones.
-                Ok(Item::Foreign)
-            },
-        );
+        let role = attr::read_own(&field.attrs, errors, "role", read_role);
         let Some((literal, role)) = role.into_value() else {
             self.rest.push(ident);
             return;

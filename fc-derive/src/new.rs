@@ -1,6 +1,6 @@
 //! `#[derive(New)]`: constructors of messages that may get further fields.
 
-use crate::attr::{self, Item, Slot};
+use crate::attr;
 use crate::errors::Errors;
 use crate::item;
 use crate::span::span_of;
@@ -36,14 +36,7 @@ enum Value<'a> {
 
 impl<'a> Field<'a> {
     fn read(field: &'a syn::Field, errors: &mut Errors) -> Option<Self> {
-        let mut extra = Slot::default();
-        attr::read(&field.attrs, errors, "a field", &mut |key, _| {
-            if key == "extra" {
-                return extra.set(key, Ok(()));
-            }
-            // `Message` reads all other keys and reports unknown ones.
-            Ok(Item::Foreign)
-        });
+        let extra = attr::read_own(&field.attrs, errors, "extra", |_| Ok(()));
         let value = match (extra.get(), optional(&field.ty)) {
             (Some(()), _) => Value::Extra,
             (None, Some(inner)) => Value::Optional(inner),

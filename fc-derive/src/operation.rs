@@ -7,7 +7,7 @@ use crate::span::generated;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::parse::{Parse as _, ParseStream};
-use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Token, Type};
+use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Type};
 
 /// The attributes of an operation.
 #[derive(Default)]
@@ -52,8 +52,8 @@ impl Operation {
             "code" => self.code.set(key, code(input)),
             "name" => self.name.set(key, attr::text(input)),
             "effect" => self.effect.set(key, effect(input)),
-            "response" => self.response.set(key, ty(input)),
-            "error" => self.error.set(key, ty(input)),
+            "response" => self.response.set(key, attr::value(input)),
+            "error" => self.error.set(key, attr::value(input)),
             "accepted_in" => self.accepted_in.set(key, accepted_in(input)),
             "ack" => self.ack.set(key, ack(input)),
             "sets_off" => self.sets_off.set(key, process::sets_off(input)),
@@ -67,8 +67,7 @@ impl Operation {
 
 /// Reads `= 0x0A03`.
 fn code(input: ParseStream<'_>) -> syn::Result<LitInt> {
-    input.parse::<Token![=]>()?;
-    let literal: LitInt = input.parse()?;
+    let literal: LitInt = attr::value(input)?;
     match attr::plain_integer::<u16>(&literal) {
         Ok(_) => Ok(literal),
         Err(error) => Err(syn::Error::new_spanned(
@@ -76,12 +75,6 @@ fn code(input: ParseStream<'_>) -> syn::Result<LitInt> {
             format!("a code has 16 bits: {error}"),
         )),
     }
-}
-
-/// Reads `= GetStationResponse`.
-fn ty(input: ParseStream<'_>) -> syn::Result<Type> {
-    input.parse::<Token![=]>()?;
-    input.parse()
 }
 
 /// Reads `= "read"`.

@@ -1,6 +1,6 @@
 //! `#[derive(RedactedDebug)]`.
 
-use crate::attr::{self, Item, Slot};
+use crate::attr;
 use crate::errors::Errors;
 use crate::item;
 use proc_macro2::TokenStream;
@@ -19,14 +19,7 @@ pub fn expand(input: &DeriveInput, mut errors: Errors) -> TokenStream {
 
 /// Reads a field. The bool is `true` for a sensitive one.
 fn read<'a>(field: &'a Field, errors: &mut Errors) -> Option<(&'a Ident, bool)> {
-    let mut sensitive = Slot::default();
-    attr::read(&field.attrs, errors, "a field", &mut |key, _| {
-        if key == "sensitive" {
-            return sensitive.set(key, Ok(()));
-        }
-        // `Message` reads all other keys and reports unknown ones.
-        Ok(Item::Foreign)
-    });
+    let sensitive = attr::read_own(&field.attrs, errors, "sensitive", |_| Ok(()));
     Some((field.ident.as_ref()?, sensitive.get().is_some()))
 }
 

@@ -35,8 +35,8 @@ impl Options {
                 {
                     "crate" => runtime.set(key, attr::path(input)),
                     "protocol" => protocol.set(key, attr::path(input)),
-                    "service" => service.set(key, name(input)),
-                    "partial" => partial.set(key, name(input)),
+                    "service" => service.set(key, attr::value(input)),
+                    "partial" => partial.set(key, attr::value(input)),
                     _ => Ok(Item::Unknown),
                 })
             };
@@ -53,12 +53,6 @@ impl Options {
             partial: partial.into_value(),
         }
     }
-}
-
-/// Reads `= Name`.
-fn name(input: ParseStream<'_>) -> syn::Result<Ident> {
-    input.parse::<Token![=]>()?;
-    input.parse()
 }
 
 /// The trait.

@@ -4,7 +4,7 @@ use crate::attr::{self, Item, Slot};
 use crate::errors::Errors;
 use crate::item;
 use syn::parse::ParseStream;
-use syn::{DeriveInput, Fields, Ident, LitInt, LitStr, Path, Token, Type, TypeArray};
+use syn::{DeriveInput, Fields, Ident, LitInt, LitStr, Path, Type, TypeArray};
 
 /// A struct with `#[derive(Header)]`.
 pub struct Header<'a> {
@@ -210,8 +210,7 @@ fn read_byte_order(input: ParseStream<'_>) -> syn::Result<ByteOrder> {
 
 /// Reads `= 0`.
 fn read_value(input: ParseStream<'_>) -> syn::Result<LitInt> {
-    input.parse::<Token![=]>()?;
-    let literal: LitInt = input.parse()?;
+    let literal: LitInt = attr::value(input)?;
     attr::plain_integer::<u64>(&literal)?;
     Ok(literal)
 }
