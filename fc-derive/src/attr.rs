@@ -151,31 +151,13 @@ pub fn listed<T>(
     none: &str,
     each: fn(ParseStream<'_>) -> syn::Result<T>,
 ) -> syn::Result<Vec<T>> {
-    let mut all = Vec::new();
-    read_list(input, none, &mut |item| {
-        all.push(each(item)?);
-        Ok(())
-    })?;
-    Ok(all)
-}
-
-fn read_list(
-    input: ParseStream<'_>,
-    none: &str,
-    each: &mut dyn FnMut(ParseStream<'_>) -> syn::Result<()>,
-) -> syn::Result<()> {
     let content;
     let parentheses = parenthesized!(content in input);
     if content.is_empty() {
         return Err(syn::Error::new(parentheses.span.join(), none));
     }
-    while !content.is_empty() {
-        each(&content)?;
-        if !content.is_empty() {
-            content.parse::<Token![,]>()?;
-        }
-    }
-    Ok(())
+    let items = content.parse_terminated(each, Token![,])?;
+    Ok(items.into_iter().collect())
 }
 
 /// Reads `= value`.
