@@ -1,13 +1,10 @@
 //! The code of a header.
 
-use super::ast::{ByteOrder, Field, Header, Role, Shape};
+use super::ast::{Algorithm, ByteOrder, Field, Header, Role, Shape};
 use super::valid::Roles;
 use crate::span::generated;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
-
-/// Length of the longest digest of the runtime, in bytes.
-const DIGEST: usize = 16;
 
 /// Returns the implementation of `Header`.
 pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
@@ -18,7 +15,7 @@ pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
     let start = roles.total_length.offset;
     let start_literal = Literal::usize_unsuffixed(start);
     let end = Literal::usize_unsuffixed(start + 4);
-    let from_bytes = from_bytes(header.byte_order);
+    let (from_bytes, _) = conversions(header.byte_order);
     let Roles {
         head,
         kind,
@@ -108,17 +105,11 @@ pub fn code(header: &Header<'_>, roles: &Roles<'_>) -> TokenStream {
     }
 }
 
-fn from_bytes(order: ByteOrder) -> TokenStream {
+/// Returns the names of the conversions of an integer from and to bytes.
+fn conversions(order: ByteOrder) -> (TokenStream, TokenStream) {
     match order {
-        ByteOrder::Big => quote!(from_be_bytes),
-        ByteOrder::Little => quote!(from_le_bytes),
-    }
-}
-
-fn to_bytes(order: ByteOrder) -> TokenStream {
-    match order {
-        ByteOrder::Big => quote!(to_be_bytes),
-        ByteOrder::Little => quote!(to_le_bytes),
+        ByteOrder::Big => (quote!(from_be_bytes), quote!(to_be_bytes)),
+        ByteOrder::Little => (quote!(from_le_bytes), quote!(to_le_bytes)),
     }
 }
 
@@ -132,28 +123,21 @@ fn sized<'h>(header: &'h Header<'h>) -> impl Iterator<Item = (&'h Field<'h>, Sha
 
 /// Returns one expression for each field, from the array `bytes`.
 fn read(header: &Header<'_>) -> TokenStream {
-    let from_bytes = from_bytes(header.byte_order);
-    sized(header)
-        .map(
-            |(
-                Field {
-                    ident, ty, offset, ..
-                },
-                shape,
-            )| {
-                let places = (*offset..offset + shape.size()).map(Literal::usize_unsuffixed);
-                match shape {
-                    Shape::Int(_) => quote!(#ident: <#ty>::#from_bytes([#(bytes[#places]),*]),),
-                    Shape::Bytes(_) => quote!(#ident: [#(bytes[#places]),*],),
-                }
-            },
-        )
-        .collect()
+    let (from_bytes, _) = conversions(header.byte_order);
+    let fields = sized(header).map(|(field, shape)| {
+        let (ident, ty, start) = (field.ident, field.ty, field.offset);
+        let places = (start..start + shape.size()).map(Literal::usize_unsuffixed);
+        match shape {
+            Shape::Int(_) => quote!(#ident: <#ty>::#from_bytes([#(bytes[#places]),*]),),
+            Shape::Bytes(_) => quote!(#ident: [#(bytes[#places]),*],),
+        }
+    });
+    fields.collect()
 }
 
 /// Returns code that fills the whole array `out`.
 fn write(header: &Header<'_>) -> TokenStream {
-    let to_bytes = to_bytes(header.byte_order);
+    let (_, to_bytes) = conversions(header.byte_order);
     let parts = sized(header).map(|(Field { ident, .. }, shape)| match shape {
         Shape::Int(_) => quote!(let #ident = self.#ident.#to_bytes();),
         Shape::Bytes(_) => quote!(let #ident = self.#ident;),
@@ -237,29 +221,24 @@ fn write_id(shape: Shape) -> TokenStream {
 /// Returns a digest field as the first bytes of a digest.
 fn read_digest(field: &Field<'_>) -> TokenStream {
     let ident = field.ident;
-    let (_, _, shape) = field.algorithm().facts();
-    let places = (0..shape.size()).map(Literal::usize_unsuffixed);
-    let rest = (shape.size()..DIGEST).map(|_| quote!(0));
-    let bytes = match shape {
-        Shape::Bytes(DIGEST) => return own(field),
-        Shape::Bytes(_) => quote!(self.#ident),
-        Shape::Int(_) => quote!(self.#ident.to_be_bytes()),
-    };
-    quote!({
-        let bytes = #bytes;
-        [#(bytes[#places],)* #(#rest),*]
-    })
+    match field.algorithm() {
+        Algorithm::Md5 => own(field),
+        Algorithm::Crc32 => quote!({
+            let [a, b, c, d] = self.#ident.to_be_bytes();
+            [a, b, c, d, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
+        }),
+    }
 }
 
 /// Returns code that sets a digest field.
 fn write_digest(field: &Field<'_>) -> TokenStream {
     let (ident, ty) = (field.ident, field.ty);
-    let (_, _, shape) = field.algorithm().facts();
-    let places = (0..shape.size()).map(Literal::usize_unsuffixed);
-    match shape {
-        Shape::Bytes(DIGEST) => quote!(self.#ident = digest;),
-        Shape::Bytes(_) => quote!(self.#ident = [#(digest[#places]),*];),
-        Shape::Int(_) => quote!(self.#ident = <#ty>::from_be_bytes([#(digest[#places]),*]);),
+    match field.algorithm() {
+        Algorithm::Md5 => quote!(self.#ident = digest;),
+        Algorithm::Crc32 => quote! {
+            let [a, b, c, d, ..] = digest;
+            self.#ident = <#ty>::from_be_bytes([a, b, c, d]);
+        },
     }
 }
 
