@@ -4,8 +4,8 @@ use crate::attr::{self, Item, Slot};
 use crate::errors::Errors;
 use crate::process::{self, SetOff, StateAt, Way};
 use crate::span::generated;
-use proc_macro2::{Span, TokenStream};
-use quote::quote;
+use proc_macro2::TokenStream;
+use quote::{ToTokens, quote};
 use syn::parse::{Parse as _, ParseStream};
 use syn::{DeriveInput, Ident, LitInt, LitStr, Path, Type};
 
@@ -173,7 +173,12 @@ pub fn expand_command(input: &DeriveInput, mut errors: Errors) -> TokenStream {
             }
         });
     }
-    let write = |code: TokenStream, name: TokenStream, effect: &Ident, response: TokenStream| {
+    let effect = effect.map_or_else(|| quote!(Read), ToTokens::to_token_stream);
+    let response = response.map_or_else(
+        || quote!(#runtime::message::Empty),
+        ToTokens::to_token_stream,
+    );
+    let write = |code: TokenStream, name: TokenStream| {
         quote! {
             #states
 
@@ -190,21 +195,8 @@ pub fn expand_command(input: &DeriveInput, mut errors: Errors) -> TokenStream {
         }
     };
     errors.finish(
-        || {
-            let effect = effect
-                .cloned()
-                .unwrap_or_else(|| Ident::new("Read", Span::call_site()));
-            let response = response.map(|ty| quote!(#ty)).unwrap_or_default();
-            write(generated(code), quote!(#name), &effect, response)
-        },
-        || {
-            let effect = Ident::new("Read", Span::call_site());
-            let response = response.map_or_else(
-                || quote!(#runtime::message::Empty),
-                |response| quote!(#response),
-            );
-            write(quote!(0), quote!(""), &effect, response)
-        },
+        || write(generated(code), quote!(#name)),
+        || write(quote!(0), quote!("")),
     )
 }
 
