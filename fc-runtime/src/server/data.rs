@@ -5,8 +5,7 @@ use super::config::Settings;
 use super::connection_id::ConnectionId;
 use super::counters::Counters;
 use super::driver::FRAME;
-use super::gate::Gate;
-use super::metered_receiver::MeteredReceiver;
+use super::gate::{Gate, LARGE, process_frame};
 use super::penalty::{Penalty, inflated};
 use crate::clock;
 use crate::frame::{FrameId, LONG, Prepared};
@@ -23,7 +22,7 @@ use std::net::SocketAddr;
 use std::pin::pin;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use tokio::io::{ReadHalf, WriteHalf};
+use tokio::io::{AsyncRead, ReadHalf, WriteHalf};
 use tokio::sync::{Notify, mpsc, oneshot};
 use tokio::task::yield_now;
 use tokio::time::{sleep, timeout};
@@ -176,7 +175,6 @@ impl<P: Protocol> DataPeer<P> {
             stall: Some(self.settings.stall),
         };
         let receiver = Receiver::new(read, self.settings.stream_decoder(), patience);
-        let receiver = MeteredReceiver::new(receiver, self.gate.clone(), Arc::clone(&self.memory));
         let sender = Sender::new(write, patience);
         self.counters.connected::<P>(self.id, self.address, "data");
         let reason = tokio::select! {
@@ -199,12 +197,11 @@ impl<P: Protocol> DataPeer<P> {
     /// Reads and writes until one of them ends. If the app sends no more, the queued frames are still sent.
     async fn converse<S: Transport>(
         &self,
-        receiver: MeteredReceiver<ReadHalf<S>, P>,
+        mut receiver: Receiver<ReadHalf<S>, P>,
         sender: Sender<WriteHalf<S>>,
         outbox: mpsc::Receiver<Outgoing>,
     ) -> Result<(), StreamError> {
         let (reading, over) = oneshot::channel();
-        let mut receiver = receiver;
         let mut write = pin!(self.write(sender, outbox, over));
         let read = tokio::select! {
             ended = self.read(&mut receiver) => ended,
@@ -218,7 +215,7 @@ impl<P: Protocol> DataPeer<P> {
 
     async fn read<S: Transport>(
         &self,
-        receiver: &mut MeteredReceiver<ReadHalf<S>, P>,
+        receiver: &mut Receiver<ReadHalf<S>, P>,
     ) -> Result<(), StreamError> {
         let mut work = 0;
         let mut penalty = Penalty::default();
@@ -228,11 +225,11 @@ impl<P: Protocol> DataPeer<P> {
                 work = 0;
                 yield_now().await;
             }
-            let next = receiver.recv().await;
+            let next = self.next(receiver).await;
             let bytes = receiver.take_received();
             self.counters.bytes_in.add(bytes);
             work += FRAME + bytes;
-            let mut rest = inflated(receiver.take_surplus());
+            let mut rest = inflated(receiver.decoder().take_surplus());
             match next {
                 Ok(None) => return Ok(()),
                 Ok(Some(frame)) => {
@@ -258,6 +255,58 @@ impl<P: Protocol> DataPeer<P> {
                 sleep(rest).await;
             }
         }
+    }
+
+    /// Returns the next frame, or `None` at the end.
+    async fn next<R: AsyncRead + Unpin>(
+        &self,
+        receiver: &mut Receiver<R, P>,
+    ) -> Result<Option<StreamFrame>, StreamError> {
+        loop {
+            if let Some(frame) = self.pass(receiver).await? {
+                return Ok(Some(frame));
+            }
+            if self.read_on(receiver).await? == 0 {
+                receiver.decoder().finish()?;
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Returns the next complete frame, after the gate if it is large.
+    async fn pass<R: AsyncRead + Unpin>(
+        &self,
+        receiver: &mut Receiver<R, P>,
+    ) -> Result<Option<StreamFrame>, StreamError> {
+        let taken = if let Some(work) = receiver.decoder().work(LARGE) {
+            let _inflated = poll_fn(|cx| self.memory.poll_lend(cx, work.inflated)).await;
+            let pass = self.gate.clone().pass().await;
+            process_frame(Some(&pass), || receiver.take())
+        } else {
+            receiver.take()
+        };
+        let decoder = receiver.decoder();
+        if decoder.idle() > LONG {
+            decoder.tidy();
+        }
+        self.memory.update(decoder.capacity(), 0);
+        taken
+    }
+
+    /// Reads once. Returns 0 at the end of the stream. Memory is reserved only after bytes have arrived.
+    async fn read_on<R: AsyncRead + Unpin>(
+        &self,
+        receiver: &mut Receiver<R, P>,
+    ) -> Result<usize, StreamError> {
+        let decoder = receiver.decoder();
+        if decoder.is_bare() {
+            return Ok(receiver.begin().await?);
+        }
+        let bytes = decoder.growth();
+        if bytes > 0 {
+            poll_fn(|cx| self.memory.poll_grow(cx, bytes)).await;
+        }
+        receiver.fill().await
     }
 
     /// Passes a frame to the receiver of streams, and waits while it is busy. The app is not read meanwhile.

@@ -33,7 +33,6 @@ mod gate;
 mod handle;
 mod handlers;
 mod handshake;
-mod metered_receiver;
 mod network;
 mod output;
 mod peer;
