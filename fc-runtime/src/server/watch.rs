@@ -113,39 +113,25 @@ impl Watchdog {
             self.read = RateMeter::new(now);
         }
         self.reads = reads;
+        let begun = self.header.filter(|_| reads);
+        let header = begun.map(|at| after(at, settings.header_timeout));
         let stalled = |flow: &RateMeter| after(flow.since, settings.stall.within);
+        let rest = (activity.expected == Expected::Rest).then(|| stalled(&self.read));
+        let unread = activity.unwritten.then(|| stalled(&self.written));
+        let silence = settings.idle_timeout.filter(|_| activity.idle);
+        let idle = silence.map(|limit| after(self.frame, limit));
         let limits = [
-            (
-                self.header
-                    .filter(|_| reads)
-                    .map(|at| after(at, settings.header_timeout)),
-                Overdue::Frame("a header did not come in time"),
-            ),
-            (
-                (activity.expected == Expected::Rest).then(|| stalled(&self.read)),
-                Overdue::Frame("a frame stalled"),
-            ),
-            (
-                activity.unwritten.then(|| stalled(&self.written)),
-                Overdue::All("the app does not read"),
-            ),
-            (
-                settings
-                    .idle_timeout
-                    .filter(|_| activity.idle)
-                    .map(|limit| after(self.frame, limit)),
-                Overdue::All("idle"),
-            ),
+            (header, Overdue::Frame("a header did not come in time")),
+            (rest, Overdue::Frame("a frame stalled")),
+            (unread, Overdue::All("the app does not read")),
+            (idle, Overdue::All("idle")),
         ];
-        let mut next = activity.due;
-        for (at, late) in limits {
-            let Some(at) = at else { continue };
-            if at <= now {
-                return Poll::Ready(late);
-            }
-            next = Some(next.map_or(at, |next| next.min(at)));
+        let is_late = |at: Option<Instant>| at.is_some_and(|at| at <= now);
+        if let Some((_, late)) = limits.into_iter().find(|(at, _)| is_late(*at)) {
+            return Poll::Ready(late);
         }
-        if let Some(next) = next {
+        let ends = limits.into_iter().filter_map(|(at, _)| at);
+        if let Some(next) = ends.chain(activity.due).min() {
             self.alarm.set(cx, next);
         }
         Poll::Pending
