@@ -53,15 +53,10 @@ impl Parse for StateAt {
     }
 }
 
-/// The message of a command in which a link begins.
-enum Side {
-    Request,
-    Response,
-}
-
 /// A field of the command and a field of the report with the same value: `response.job = job`.
 struct Tie {
-    side: Side,
+    /// The message of the command in which the link begins.
+    message: TokenStream,
     command: Way,
     report: Way,
 }
@@ -69,9 +64,9 @@ struct Tie {
 impl Parse for Tie {
     fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
         let word: Ident = input.parse()?;
-        let side = match word.to_string().as_str() {
-            "request" => Side::Request,
-            "response" => Side::Response,
+        let message = match word.to_string().as_str() {
+            "request" => quote!(self),
+            "response" => quote!(answer),
             _ => {
                 let message = "expected `request` or `response`";
                 return Err(syn::Error::new_spanned(word, message));
@@ -82,7 +77,7 @@ impl Parse for Tie {
         input.parse::<Token![=]>()?;
         let report = input.parse()?;
         Ok(Self {
-            side,
+            message,
             command,
             report,
         })
@@ -133,10 +128,7 @@ pub fn ways(input: ParseStream<'_>) -> syn::Result<Vec<Way>> {
 pub fn set_off(runtime: &Path, command: &Ident, set_off: &[SetOff]) -> TokenStream {
     let impls = set_off.iter().map(|SetOff { report, ties }| {
         let tests = ties.iter().map(|tie| {
-            let command = tie.command.within(&match tie.side {
-                Side::Request => quote!(self),
-                Side::Response => quote!(answer),
-            });
+            let command = tie.command.within(&tie.message);
             let report = tie.report.within(&quote!(report));
             // An absent field cannot distinguish calls.
             quote! {

@@ -6,6 +6,7 @@ use crate::attr::{self, Item, Slot};
 use crate::errors::Errors;
 use crate::item;
 use proc_macro2::{Span, TokenStream};
+use quote::format_ident;
 use syn::ext::IdentExt as _;
 use syn::parse::{Parse, ParseStream};
 use syn::{DeriveInput, Fields, Generics, Ident, LitStr, Path, Type, Visibility};
@@ -51,8 +52,8 @@ pub struct FieldAttributes {
     pub also: Slot<Vec<LitStr>>,
     /// `wire = "…"`.
     pub wire: Slot<WireForm>,
-    /// `lenient(…)`.
-    pub lenient: Slot<Lenient>,
+    /// The form of `lenient(…)`.
+    pub lenient: Slot<Ident>,
     /// `empty_is_absent`.
     pub empty_is_absent: Slot<()>,
     /// Constraints.
@@ -74,15 +75,6 @@ pub enum WireForm {
     String,
     /// `wire = "number"`.
     Number,
-}
-
-/// The kind of a lenient field.
-#[derive(Clone, Copy)]
-pub enum Lenient {
-    /// `lenient(number)`.
-    Number,
-    /// `lenient(bool)`.
-    Bool,
 }
 
 impl<'a> Message<'a> {
@@ -201,8 +193,8 @@ fn wire_form(input: ParseStream<'_>) -> syn::Result<WireForm> {
     attr::word(input, &words).map(|(_, form)| form)
 }
 
-/// Reads `(number)` or `(bool)`.
-fn lenient(input: ParseStream<'_>) -> syn::Result<Lenient> {
+/// Reads `(number)` or `(bool)`. Returns the name of the form in the runtime.
+fn lenient(input: ParseStream<'_>) -> syn::Result<Ident> {
     let content;
     syn::parenthesized!(content in input);
     let word: Ident = content.parse()?;
@@ -210,8 +202,8 @@ fn lenient(input: ParseStream<'_>) -> syn::Result<Lenient> {
     let rest: TokenStream = content.parse()?;
     match word.to_string().as_str() {
         _ if !rest.is_empty() => Err(syn::Error::new_spanned(rest, "expected `)`")),
-        "number" => Ok(Lenient::Number),
-        "bool" => Ok(Lenient::Bool),
+        "number" => Ok(format_ident!("LenientNumber")),
+        "bool" => Ok(format_ident!("LenientBool")),
         _ => Err(syn::Error::new(word.span(), "expected `number` or `bool`")),
     }
 }

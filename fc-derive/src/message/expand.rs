@@ -1,6 +1,6 @@
 //! The code of a message.
 
-use super::ast::{Field, FieldAttributes, Lenient, Message, WireForm};
+use super::ast::{Field, FieldAttributes, Message, WireForm};
 use super::condition;
 use crate::span::{moved, span_of};
 use proc_macro2::{Literal, Span, TokenStream};
@@ -57,8 +57,7 @@ pub fn code(message: &Message<'_>) -> TokenStream {
 /// Returns the form in which a field is read, if it is not that of the type.
 fn form(runtime: &Path, attributes: &FieldAttributes) -> Option<TokenStream> {
     let form = match (attributes.lenient.get(), attributes.wire.get()) {
-        (Some(Lenient::Number), _) => Some(quote!(#runtime::json::LenientNumber)),
-        (Some(Lenient::Bool), _) => Some(quote!(#runtime::json::LenientBool)),
+        (Some(lenient), _) => Some(quote!(#runtime::json::#lenient)),
         (None, Some(WireForm::String)) => Some(quote!(#runtime::json::Quoted)),
         (None, Some(WireForm::Number)) => Some(quote!(#runtime::json::Numeric)),
         (None, None) => None,
