@@ -3,6 +3,8 @@
 use crate::errors::Errors;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
+use std::fmt::Display;
+use std::str::FromStr;
 use syn::ext::IdentExt as _;
 use syn::parse::{Parse, ParseStream};
 use syn::{Attribute, Ident, LitFloat, LitInt, LitStr, Path, Token, parenthesized, parse_quote};
@@ -190,20 +192,12 @@ pub fn word<T: Copy>(input: ParseStream<'_>, words: &[(&str, T)]) -> syn::Result
 }
 
 /// Reads `= 5` as an integer that fits `T`.
-pub fn integer<T>(input: ParseStream<'_>) -> syn::Result<T>
-where
-    T: std::str::FromStr,
-    T::Err: std::fmt::Display,
-{
+pub fn integer<T: FromStr<Err: Display>>(input: ParseStream<'_>) -> syn::Result<T> {
     plain_integer(&value(input)?)
 }
 
 /// Returns the value of a literal without suffix.
-pub fn plain_integer<T>(literal: &LitInt) -> syn::Result<T>
-where
-    T: std::str::FromStr,
-    T::Err: std::fmt::Display,
-{
+pub fn plain_integer<T: FromStr<Err: Display>>(literal: &LitInt) -> syn::Result<T> {
     no_suffix(literal, literal.suffix())?;
     if literal.base10_digits().starts_with('-') {
         return Err(syn::Error::new_spanned(
@@ -318,11 +312,7 @@ pub fn scalar(input: ParseStream<'_>, expected: &str) -> syn::Result<Scalar> {
 }
 
 /// Reads `first..=last` of `T`.
-pub fn range<T>(input: ParseStream<'_>) -> syn::Result<(T, T)>
-where
-    T: std::str::FromStr + PartialOrd,
-    T::Err: std::fmt::Display,
-{
+pub fn range<T: FromStr<Err: Display> + PartialOrd>(input: ParseStream<'_>) -> syn::Result<(T, T)> {
     let first: LitInt = input.parse()?;
     input.parse::<Token![..=]>()?;
     let last: LitInt = input.parse()?;
