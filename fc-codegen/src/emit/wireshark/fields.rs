@@ -11,44 +11,10 @@ use std::collections::BTreeMap;
 /// The deepest objects whose keys have a filter name. Types can contain themselves.
 const DEEPEST: usize = 12;
 
-/// The type of a filter field.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum FilterType {
-    Boolean,
-    Int32,
-    Uint32,
-    Int64,
-    Uint64,
-    Double,
-    String,
-}
-
-impl FilterType {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Boolean => "boolean",
-            Self::Int32 => "int32",
-            Self::Uint32 => "uint32",
-            Self::Int64 => "int64",
-            Self::Uint64 => "uint64",
-            Self::Double => "double",
-            Self::String => "string",
-        }
-    }
-
-    fn of_int(kind: IntKind) -> Self {
-        match kind {
-            IntKind::I8 | IntKind::I16 | IntKind::I32 => Self::Int32,
-            IntKind::U8 | IntKind::U16 | IntKind::U32 => Self::Uint32,
-            IntKind::I64 => Self::Int64,
-            IntKind::U64 => Self::Uint64,
-        }
-    }
-}
-
 /// A filter field.
 struct Filter {
-    ty: FilterType,
+    /// The type as Wireshark names it.
+    ty: &'static str,
     text: String,
     /// The wire values with their names.
     values: Vec<(String, String)>,
@@ -81,7 +47,7 @@ pub(super) fn table(model: &Model, languages: Languages) -> Table {
     }
     let mut table = Table::new(1);
     for (path, filter) in &filters.found {
-        let (path, ty, text) = (quoted(path), filter.ty.name(), quoted(&filter.text));
+        let (path, ty, text) = (quoted(path), filter.ty, quoted(&filter.text));
         let values = filter.values.iter();
         let values = values.map(|(value, name)| format!("[{}] = {}", quoted(value), quoted(name)));
         let values: Vec<_> = values.collect();
@@ -143,25 +109,34 @@ impl<'m> Filters<'m> {
             .entry(path)
             .or_insert(Filter { ty, text, values });
         if filter.ty != ty {
-            filter.ty = FilterType::String;
+            filter.ty = "string";
         }
     }
 
-    fn filter_type(&self, ty: &Type) -> FilterType {
+    fn filter_type(&self, ty: &Type) -> &'static str {
         match ty.item() {
-            Type::Bool => FilterType::Boolean,
-            Type::Int(kind) => FilterType::of_int(*kind),
-            Type::TimestampMs | Type::TimestampS => FilterType::Int64,
-            Type::Float(_) => FilterType::Double,
-            Type::String | Type::Base64 | Type::Json | Type::Array(_) => FilterType::String,
+            Type::Bool => "boolean",
+            Type::Int(kind) => integer_type(*kind),
+            Type::TimestampMs | Type::TimestampS => "int64",
+            Type::Float(_) => "double",
+            Type::String | Type::Base64 | Type::Json | Type::Array(_) => "string",
             Type::Named(named) => match &self.model.types.get(named).shape {
                 TypeShape::Enum(EnumType {
                     repr: EnumRepr::Int(kind),
                     ..
-                }) => FilterType::of_int(*kind),
-                _ => FilterType::String,
+                }) => integer_type(*kind),
+                _ => "string",
             },
         }
+    }
+}
+
+fn integer_type(kind: IntKind) -> &'static str {
+    match kind {
+        IntKind::I8 | IntKind::I16 | IntKind::I32 => "int32",
+        IntKind::U8 | IntKind::U16 | IntKind::U32 => "uint32",
+        IntKind::I64 => "int64",
+        IntKind::U64 => "uint64",
     }
 }
 
