@@ -14,6 +14,7 @@ pub(crate) mod facts;
 pub(crate) mod group;
 pub mod items;
 pub mod language;
+pub(crate) mod literal;
 pub(crate) mod marks;
 pub mod name;
 pub(crate) mod process;

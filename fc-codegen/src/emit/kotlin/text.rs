@@ -4,12 +4,11 @@ use crate::package::context::Context;
 use crate::package::digits::grouped;
 use crate::package::docs::escape_links;
 use crate::package::language::Case;
+use crate::package::literal::quoted;
 use crate::package::marks::FieldMarks;
 use crate::package::style::{Comment, Style};
 use crate::package::template::{Templates, templates};
-use fc_spec::model::{
-    Argument, Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable, is_hidden,
-};
+use fc_spec::model::{Argument, Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::sync::LazyLock;
@@ -84,30 +83,16 @@ pub fn scalar(wire: &Scalar) -> String {
 
 /// Returns a string literal. The literal is raw if that avoids escapes.
 pub fn literal(text: &str) -> String {
-    let needs_escape = |c: char| c.is_control() || is_hidden(c);
     let is_plain = !has_unprintable(text) && !text.contains('$');
     if is_plain && text.contains(['"', '\\']) && !text.contains("\"\"\"") && !text.ends_with('"') {
         return format!("\"\"\"{text}\"\"\"");
     }
-    let mut out = String::with_capacity(text.len() + 2);
-    out.push('"');
-    for character in text.chars() {
-        match character {
-            '"' | '\\' | '$' => out.extend(['\\', character]),
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            c if needs_escape(c) => {
-                for unit in c.encode_utf16(&mut [0; 2]) {
-                    // Writing to a `String` cannot fail.
-                    let _ = write!(out, "\\u{unit:04x}");
-                }
-            }
-            c => out.push(c),
+    quoted(text, '"', &['$'], |out, c| {
+        for unit in c.encode_utf16(&mut [0; 2]) {
+            // Writing to a `String` cannot fail.
+            let _ = write!(out, "\\u{unit:04x}");
         }
-    }
-    out.push('"');
-    out
+    })
 }
 
 /// Returns the Kotlin type of a value.

@@ -4,6 +4,7 @@ use super::source::Code;
 use crate::package::digits::grouped;
 use crate::package::expr::{Expr, Record};
 use crate::package::items::Item;
+use crate::package::literal::quoted;
 use fc_spec::model::{Number, Scalar, has_unprintable, is_hidden};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -15,28 +16,14 @@ pub fn literal(text: &str) -> String {
     if !has_unprintable(text) && !text.contains(['\\', quote]) {
         return format!("{quote}{text}{quote}");
     }
-    let mut out = String::with_capacity(text.len() + 2);
-    out.push(quote);
-    for character in text.chars() {
-        match character {
-            '\\' => out.push_str("\\\\"),
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            c if c == quote => out.extend(['\\', c]),
-            c if c.is_control() || is_hidden(c) => {
-                let code = u32::from(c);
-                let _ = match code {
-                    0..0x100 => write!(out, "\\x{code:02x}"),
-                    0x100..0x1_0000 => write!(out, "\\u{code:04x}"),
-                    _ => write!(out, "\\U{code:08x}"),
-                };
-            }
-            c => out.push(c),
-        }
-    }
-    out.push(quote);
-    out
+    quoted(text, quote, &[], |out, c| {
+        let code = u32::from(c);
+        let _ = match code {
+            0..0x100 => write!(out, "\\x{code:02x}"),
+            0x100..0x1_0000 => write!(out, "\\u{code:04x}"),
+            _ => write!(out, "\\U{code:08x}"),
+        };
+    })
 }
 
 /// Returns a regular expression as a literal, which is raw if that needs no escapes.

@@ -1,6 +1,7 @@
 //! Literals of Rust: strings and numbers.
 
 use crate::package::digits::grouped;
+use crate::package::literal::quoted;
 use fc_spec::model::{Number, is_hidden};
 
 /// Returns a string literal. The literal is raw if that avoids escapes.
@@ -23,21 +24,7 @@ pub fn literal(text: &str) -> String {
         }
         return ["r", &hashes, "\"", text, "\"", &hashes].concat();
     }
-    let mut out = String::with_capacity(text.len() + 2);
-    out.push('"');
-    for character in text.chars() {
-        match character {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            c if needs_escape(c) => out.extend(c.escape_unicode()),
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
+    quoted(text, '"', &[], |out, c| out.extend(c.escape_unicode()))
 }
 
 pub fn number(number: &Number) -> String {

@@ -2,10 +2,10 @@
 
 use super::context::Context;
 use crate::package::docs::{Docs, escape_links};
+use crate::package::literal::quoted;
 use crate::package::source::join;
 use crate::package::style::{Comment, Style};
 use crate::package::template::{Templates, templates};
-use fc_spec::model::is_hidden;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -76,23 +76,7 @@ pub fn tag_text(text: &str) -> String {
 pub fn literal(text: &str) -> String {
     let count = |quote| text.matches(quote).count();
     let quote = if count('\'') > count('"') { '"' } else { '\'' };
-    let mut out = String::with_capacity(text.len() + 2);
-    out.push(quote);
-    for character in text.chars() {
-        match character {
-            '\n' => out.push_str("\\n"),
-            '\r' => out.push_str("\\r"),
-            '\t' => out.push_str("\\t"),
-            '\\' => out.push_str("\\\\"),
-            c if c == quote => out.extend(['\\', c]),
-            c if c.is_control() || is_hidden(c) => {
-                out.extend(c.escape_unicode());
-            }
-            c => out.push(c),
-        }
-    }
-    out.push(quote);
-    out
+    quoted(text, quote, &[], |out, c| out.extend(c.escape_unicode()))
 }
 
 pub fn float(value: f64) -> String {
