@@ -23,4 +23,5 @@ pub(crate) mod samples;
 pub(crate) mod source;
 pub(crate) mod style;
 pub(crate) mod template;
+pub(crate) mod types;
 pub(crate) mod wire;

@@ -2,9 +2,10 @@
 
 use crate::package::context::Context;
 use crate::package::cycles::{Needs, first_of_circle, reached};
-use crate::package::items::{Item, Shape};
+use crate::package::items::Item;
 use crate::package::language::{CPP, Role};
 use crate::package::process::set_off;
+use crate::package::types::{in_lists, parts};
 use fc_spec::model::{Accepted, Direction, Field, Type, TypeRef};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -49,13 +50,8 @@ pub fn field_type_in(context: &Context<'_>, space: &str, field: &Field) -> Strin
     let Some(id) = context.package.id_of(field) else {
         return name_in(context, space, &field.ty);
     };
-    let mut ty = [space, &*id.name].concat();
-    let mut held = &field.ty;
-    while let Type::Array(item) = held {
-        ty = format!("std::vector<{ty}>");
-        held = item;
-    }
-    ty
+    let id = [space, &*id.name].concat();
+    in_lists(&field.ty, &id, |item| format!("std::vector<{item}>"))
 }
 
 /// Converts an integer type: `u16` to `std::uint16_t`.
@@ -156,14 +152,7 @@ fn place<'p, 'm>(
 
 /// Returns the types that must be declared before a type.
 fn held_by<'p>(context: &'p Context<'_>, item: &'p Item<'_>) -> Vec<&'p TypeRef> {
-    let mut held: Vec<&TypeRef> = match &item.shape {
-        Shape::Record(_, fields) => fields
-            .iter()
-            .filter_map(|it| it.of.ty.innermost())
-            .collect(),
-        Shape::Choice(_, variants) => variants.iter().map(|it| &*it.of.ty).collect(),
-        Shape::Enum(..) => Vec::new(),
-    };
+    let mut held: Vec<&TypeRef> = parts(item);
     if let Some((operation, Direction::Request)) = item.body_of()
         && context.package.call(operation).is_some()
         && let Some(messages) = operation.messages()

@@ -8,6 +8,7 @@ use crate::package::literal::quoted;
 use crate::package::marks::FieldMarks;
 use crate::package::style::{Comment, Style};
 use crate::package::template::{Templates, templates};
+use crate::package::types::in_lists;
 use fc_spec::model::{Argument, Field, FloatKind, IntKind, Number, Scalar, Type, has_unprintable};
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -116,16 +117,10 @@ pub fn type_of(context: &Context<'_>, ty: &Type) -> String {
 
 /// Returns the Kotlin type of a field. An id field has its id type, if one exists.
 pub fn field_type(context: &Context<'_>, field: &Field) -> String {
-    let Some(id) = context.package.id_of(field) else {
-        return type_of(context, &field.ty);
-    };
-    let mut ty = id.name.to_string();
-    let mut held = &field.ty;
-    while let Type::Array(item) = held {
-        ty = format!("List<{ty}>");
-        held = item;
+    match context.package.id_of(field) {
+        Some(id) => in_lists(&field.ty, &id.name, |item| format!("List<{item}>")),
+        None => type_of(context, &field.ty),
     }
-    ty
 }
 
 /// Returns the codec of a plain type.

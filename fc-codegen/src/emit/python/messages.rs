@@ -14,6 +14,7 @@ use crate::package::language::Case;
 use crate::package::marks::FieldMarks;
 use crate::package::name::free;
 use crate::package::source::Source;
+use crate::package::types::in_lists;
 use fc_spec::model::{Argument, EnumRepr, Field, Scalar, Text, Type, TypeShape, Value, Variant};
 
 /// Writes message types. Enums come first, and choices last.
@@ -142,12 +143,7 @@ fn field_annotation(context: &Context<'_>, field: &Field, optional: bool) -> Str
     let Some(id) = context.package.id_of(field) else {
         return annotation(context, &field.ty, optional);
     };
-    let mut ty = id.name.to_string();
-    let mut held = &field.ty;
-    while let Type::Array(item) = held {
-        ty = format!("list[{ty}]");
-        held = item;
-    }
+    let ty = in_lists(&field.ty, &id.name, |item| format!("list[{item}]"));
     if optional { ty + " | None" } else { ty }
 }
 

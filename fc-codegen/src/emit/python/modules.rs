@@ -8,11 +8,12 @@ use super::source::Python;
 use crate::package::context::Context;
 use crate::package::cycles::{Needs, first_of_circle, reached};
 use crate::package::group::Group;
-use crate::package::items::{Package, Shape};
+use crate::package::items::Package;
 use crate::package::language::Case;
 use crate::package::name::free;
 use crate::package::process::set_off;
 use crate::package::source::Source;
+use crate::package::types::parts;
 use fc_spec::model::{Accepted, Kind, Operation, Type, TypeRef};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::ops::Deref;
@@ -124,10 +125,7 @@ impl<'p, 'm> ModulePlan<'p, 'm> {
         let uses = groups.iter().map(|group| {
             let mut found = Used::default();
             for item in group.types {
-                item.fields().iter().for_each(|it| found.all_in(&it.of.ty));
-                if let Shape::Choice(_, variants) = &item.shape {
-                    found.types.extend(variants.iter().map(|it| &*it.of.ty));
-                }
+                found.types.extend(parts(item));
             }
             for operation in &group.operations {
                 found.operation(context, operation);

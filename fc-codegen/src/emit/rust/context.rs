@@ -1,6 +1,7 @@
 //! Rust types of fields and messages.
 
 use crate::package::items::Item;
+use crate::package::types::in_lists;
 use fc_spec::model::{Field, Type};
 
 pub use crate::package::context::{Context, page_of};
@@ -9,7 +10,7 @@ impl Context<'_> {
     /// Returns the Rust type of a field without its `Option`. An id field has its id type, if one exists.
     pub fn field_type(&self, field: &Field) -> String {
         match self.package.id_of(field) {
-            Some(id) => lists_of(&field.ty, &id.name),
+            Some(id) => in_lists(&field.ty, &id.name, |item| format!("Vec<{item}>")),
             None => self.rust_type(&field.ty),
         }
     }
@@ -25,14 +26,6 @@ impl Context<'_> {
             Type::Array(item) => format!("Vec<{}>", self.rust_type(item)),
             Type::Named(named) => self.name_of(named).to_owned(),
         }
-    }
-}
-
-/// Replaces the innermost item type of a list with `item`.
-fn lists_of(ty: &Type, item: &str) -> String {
-    match ty {
-        Type::Array(inner) => format!("Vec<{}>", lists_of(inner, item)),
-        _ => item.to_owned(),
     }
 }
 

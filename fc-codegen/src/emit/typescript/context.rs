@@ -1,9 +1,9 @@
 //! TypeScript types of fields and messages, and the imports of the package's files.
 
-use crate::package::items::{Item, Shape};
+use crate::package::items::Shape;
 use crate::package::language::{Role, TYPESCRIPT};
-use fc_spec::model::{EnumRepr, Field, IntKind, Number, Type, TypeRef};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::package::types::in_lists;
+use fc_spec::model::{EnumRepr, Field, IntKind, Number, Type};
 
 pub use crate::package::context::{Context, page_of};
 
@@ -12,16 +12,10 @@ const SAFE: i128 = (1 << 53) - 1;
 
 /// Returns the type of a field without its optional mark. An id field has its id type, if one exists.
 pub fn field_type(context: &Context<'_>, field: &Field) -> String {
-    let Some(id) = context.package.id_of(field) else {
-        return type_of(context, &field.ty, is_large(context, field));
-    };
-    let mut ty = id.name.to_string();
-    let mut held = &field.ty;
-    while let Type::Array(item) = held {
-        ty.push_str("[]");
-        held = item;
+    match context.package.id_of(field) {
+        Some(id) => in_lists(&field.ty, &id.name, |item| format!("{item}[]")),
+        None => type_of(context, &field.ty, is_large(context, field)),
     }
-    ty
 }
 
 /// Returns the type of a type of the spec; `large` makes its integers `bigint`.
@@ -49,23 +43,6 @@ pub fn is_large(context: &Context<'_>, field: &Field) -> bool {
     }
 }
 
-/// Returns the types that are not in the module `home`, grouped by the name of their module.
-pub fn imports<'a>(
-    context: &'a Context<'_>,
-    home: &str,
-    types: impl IntoIterator<Item = &'a TypeRef>,
-) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
-    let mut imports: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for named in types {
-        let module = context.package.module_of(named);
-        if module.id != home {
-            let names = imports.entry(&module.name).or_default();
-            names.insert(context.name_of(named));
-        }
-    }
-    imports
-}
-
 /// Returns the local name of a runtime type in files that have types of the spec.
 ///
 /// The name ends in `$` if a type of the spec has the same name.
@@ -91,18 +68,6 @@ pub fn imported(context: &Context<'_>, name: &str) -> String {
         local
     } else {
         format!("{name} as {local}")
-    }
-}
-
-/// Returns the types that a message type contains.
-pub fn parts<'a>(item: &'a Item<'_>) -> Vec<&'a TypeRef> {
-    match &item.shape {
-        Shape::Record(_, fields) => fields
-            .iter()
-            .filter_map(|field| field.ty.innermost())
-            .collect(),
-        Shape::Choice(_, variants) => variants.iter().map(|variant| &*variant.of.ty).collect(),
-        Shape::Enum(..) => Vec::new(),
     }
 }
 

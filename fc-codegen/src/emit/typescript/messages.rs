@@ -4,7 +4,7 @@
 //! because the schemas read the constants of enums when they load.
 
 use super::constants::wire;
-use super::context::{Context, field_type, imported, imports, own, page_of, parts, repr_is_large};
+use super::context::{Context, field_type, imported, own, page_of, repr_is_large};
 use super::group::Group;
 use super::source::{Source, alternatives, literal, named, property, tag_text};
 use super::{client, robot};
@@ -14,6 +14,7 @@ use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Expressions};
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
+use crate::package::types::parts;
 use crate::sample::Samples;
 use fc_spec::model::{
     Deprecation, Direction, EnumRepr, EnumType, EnumValue, Field, Operation, Type, Variant,
@@ -46,7 +47,7 @@ pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> St
     let names = names.iter().map(|name| imported(context, name));
     named(&mut out, "import type", names, "../../../src/runtime.ts");
     let types = items.iter().flat_map(parts).chain(group.bodies(context));
-    for (from, names) in imports(context, group.id, types) {
+    for (from, names) in context.imports(group.id, types) {
         named(
             &mut out,
             "import type",

@@ -1,7 +1,7 @@
 //! Schemas of one group's types: a constant for each, which the compiler checks against the type.
 
 use super::constants::{constant, number};
-use super::context::{Context, imported, imports, is_large, is_safe, own, parts};
+use super::context::{Context, imported, is_large, is_safe, own};
 use super::group::Group;
 use super::layout::{Layout, Members};
 use super::source::{head, named};
@@ -9,6 +9,7 @@ use crate::package::expr::Expressions;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::language::Case;
 use crate::package::marks::FieldMarks;
+use crate::package::types::parts;
 use crate::sample::Samples;
 use fc_spec::model::{Argument, EnumRepr, EnumType, EnumValue, Field, Scalar, Type, Value};
 
@@ -23,7 +24,7 @@ pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> St
     let kinds = items.iter().map(|item| imported(context, kind(item)));
     named(&mut out, "import type", kinds, "../../../src/schema.ts");
     out.line("import * as messages from '../../messages.ts'");
-    for (from, names) in imports(context, group.id, items.iter().flat_map(parts)) {
+    for (from, names) in context.imports(group.id, items.iter().flat_map(parts)) {
         named(&mut out, "import", names, &format!("../{from}/schemas.ts"));
     }
     let expressions = Expressions::new(&context.package);
