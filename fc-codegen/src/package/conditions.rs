@@ -1,8 +1,8 @@
 //! Conditions that make a field depend on the values of other fields of its struct.
 
 use super::facts::code;
-use crate::package::expr::{Expr, Expressions};
-use crate::package::items::Spelled;
+use crate::package::expr::Expr;
+use crate::package::items::{Package, Spelled};
 use fc_spec::model::{Condition, Field, Scalar, Value};
 
 /// The fields that a condition tests.
@@ -46,7 +46,7 @@ impl Asked<'_, '_> {
 
 /// Returns the sentence about the condition of a field. `spelled` writes a constant in the language.
 pub fn sentence(
-    expressions: &Expressions<'_, '_>,
+    package: &Package<'_>,
     field: &Field,
     fields: &[Spelled<'_, Field>],
     spelled: impl Fn(&Expr<'_>) -> String,
@@ -55,7 +55,7 @@ pub fn sentence(
     let is = if field.optional { "Present" } else { "Valid" };
     let only = if asked.word == "when" { "only " } else { "" };
     let each = asked.each(" or ", |other, wire| {
-        let value = expressions.value(&other.ty, &Value::from(wire));
+        let value = package.value(&other.ty, &Value::from(wire));
         code(&spelled(&value))
     });
     let each = each.iter().map(|(name, any)| format!("`{name}` is {any}"));

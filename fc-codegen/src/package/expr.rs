@@ -4,7 +4,9 @@ use super::items::{Item, Package, Shape, Spelled};
 use crate::sample::Samples;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use fc_spec::model::{EnumValue, Field, Number, Scalar, StructRef, Type, TypeRef, Value, Variant};
+use fc_spec::model::{
+    EnumValue, Field, Number, Scalar, StructRef, Table, Type, TypeRef, Value, Variant,
+};
 
 /// A constant, in which every part has its type in the package.
 #[derive(Clone, Debug)]
@@ -44,26 +46,22 @@ pub struct Record<'p> {
     pub members: Vec<(&'p Spelled<'p, Field>, Option<Expr<'p>>)>,
 }
 
-/// Builds expressions from checked values.
-#[derive(Debug)]
-pub struct Expressions<'p, 'm> {
-    package: &'p Package<'m>,
-}
-
-impl<'p, 'm> Expressions<'p, 'm> {
-    /// Creates a builder for the values of a package's model.
-    #[must_use]
-    pub fn new(package: &'p Package<'m>) -> Self {
-        Self { package }
-    }
-
+impl<'m> Package<'m> {
     /// Returns a struct value, given in wire form.
     #[must_use]
-    pub fn record(&self, ty: &StructRef, value: &Value) -> Record<'p> {
-        self.members(self.package.item(ty), value)
+    pub fn record(&self, ty: &StructRef, value: &Value) -> Record<'_> {
+        self.members(self.item(ty), value)
     }
 
-    fn members(&self, item: &'p Item<'m>, value: &Value) -> Record<'p> {
+    /// Returns the rows of a table as a list.
+    #[must_use]
+    pub fn rows(&self, table: &Table) -> Expr<'_> {
+        let rows = table.rows.iter();
+        let rows = rows.map(|row| Expr::Record(self.record(&table.row, row)));
+        Expr::List(rows.collect())
+    }
+
+    fn members<'p>(&'p self, item: &'p Item<'m>, value: &Value) -> Record<'p> {
         let members = item.fields().iter().map(|field| {
             let held = value.get(&field.wire).filter(|held| **held != Value::Null);
             let made = match held {
@@ -83,16 +81,16 @@ impl<'p, 'm> Expressions<'p, 'm> {
 
     /// Returns the value of a field, given in wire form.
     #[must_use]
-    pub fn held(&self, field: &Field, value: &Value) -> Expr<'p> {
+    pub fn held(&self, field: &Field, value: &Value) -> Expr<'_> {
         let expr = self.value(&field.ty, value);
-        match self.package.id_of(field) {
+        match self.id_of(field) {
             Some(id) => expr.into_ids(&id.name),
             None => expr,
         }
     }
 
-    fn named(&self, ty: &TypeRef, value: &Value) -> Expr<'p> {
-        let item = self.package.item(ty);
+    fn named(&self, ty: &TypeRef, value: &Value) -> Expr<'_> {
+        let item = self.item(ty);
         match &item.shape {
             Shape::Record(..) => Expr::Record(self.members(item, value)),
             Shape::Enum(_, values) => match values.iter().find(|it| is_it(it, value)) {
@@ -100,7 +98,7 @@ impl<'p, 'm> Expressions<'p, 'm> {
                 None => Expr::Unlisted(item, Box::new(plain(value))),
             },
             Shape::Choice(choice, variants) => {
-                let samples = Samples::new(self.package.model);
+                let samples = Samples::new(self.model);
                 let taken = samples.variant_of(choice, value);
                 let is_taken =
                     |it: &&Spelled<'_, Variant>| taken.is_some_and(|of| of.name == it.of.name);
@@ -114,7 +112,7 @@ impl<'p, 'm> Expressions<'p, 'm> {
 
     /// Returns a value of a type, given in wire form.
     #[must_use]
-    pub fn value(&self, ty: &Type, value: &Value) -> Expr<'p> {
+    pub fn value(&self, ty: &Type, value: &Value) -> Expr<'_> {
         match (ty, value) {
             (Type::Named(named), value) => self.named(named, value),
             (Type::Json, value) => Expr::Json(value.to_string()),

@@ -5,7 +5,7 @@
 use super::context::Context;
 use super::source::Source;
 use super::style::Style;
-use crate::package::expr::{Expressions, Record};
+use crate::package::expr::Record;
 use crate::package::items::{Call, Spelled};
 use crate::package::language::Language;
 use crate::sample::Profile;
@@ -97,7 +97,7 @@ fn example<'p>(
     let value = context
         .samples()
         .body(operation, direction, Profile::Example);
-    Some(Expressions::new(&context.package).record(&body.ty, &value))
+    Some(context.package.record(&body.ty, &value))
 }
 
 /// All samples of a package, in the order of the file. Each is built when it is written.

@@ -6,8 +6,8 @@ use super::process;
 use super::types::{Header, namespace};
 use crate::package::conditions::Asked;
 use crate::package::context::Context;
-use crate::package::expr::{Expr, Expressions};
-use crate::package::items::{Item, Shape, Spelled};
+use crate::package::expr::Expr;
+use crate::package::items::{Item, Package, Shape, Spelled};
 use crate::package::marks::FieldMarks;
 use crate::package::process::has_states;
 use crate::package::source::Source;
@@ -85,8 +85,8 @@ fn types(out: &mut Source, context: &Context<'_>, header: &Header<'_, '_>) {
 
 fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Spelled<'_, Field>]) {
     let space = &namespace(context);
+    let package = &context.package;
     let name = &item.ty.name;
-    let expressions = Expressions::new(&context.package);
     let marks = fields
         .iter()
         .map(|field| FieldMarks::build(field.of, fields));
@@ -119,7 +119,7 @@ fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Sp
             }
         });
         let asked = marks.iter().filter_map(|(field, marks)| {
-            Some(asks(space, &expressions, field, marks.condition.as_ref()?))
+            Some(asks(space, package, field, marks.condition.as_ref()?))
         });
         let asked: Vec<String> = asked.collect();
         let (visit, message) = match asked.as_slice() {
@@ -221,13 +221,13 @@ fn field_of(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> String {
 /// Returns the check of a field's condition, which depends on other fields.
 fn asks(
     space: &str,
-    expressions: &Expressions<'_, '_>,
+    package: &Package<'_>,
     field: &Spelled<'_, Field>,
     condition: &Asked<'_, '_>,
 ) -> String {
     let holds = condition.fields.iter().map(|(other, values)| {
         let each = values.iter().map(|wire| {
-            let value = expressions.held(other, &Value::from(wire));
+            let value = package.held(other, &Value::from(wire));
             format!("message.{} == {}", other.name, compared(space, &value))
         });
         let each: Vec<String> = each.collect();

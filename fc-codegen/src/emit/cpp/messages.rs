@@ -11,7 +11,7 @@ use super::types::{Header, field_type, integer_type, namespace};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
-use crate::package::expr::{Expr, Expressions};
+use crate::package::expr::Expr;
 use crate::package::facts;
 use crate::package::items::{Call, Item, Shape, Spelled};
 use crate::package::language::Case;
@@ -108,12 +108,11 @@ fn structure(
     fields: &[Spelled<'_, Field>],
 ) {
     out.docs(&facts::item_docs(context, item));
-    let expressions = Expressions::new(&context.package);
     includes.own("fc_runtime/json.hpp");
     let name = &item.ty.name;
     out.enclose(&format!("struct {name} {{"), "};", |out| {
         for field in fields {
-            let condition = sentence(&expressions, field, fields, spelled);
+            let condition = sentence(&context.package, field, fields, spelled);
             out.docs(&facts::field_docs(&CPP, field, condition));
             used(includes, &field.ty);
             let mut ty = field_type(context, field);
@@ -135,7 +134,7 @@ fn structure(
                 continue;
             };
             let ty = field_type(context, field);
-            let value = expressions.held(field, &Value::from(default));
+            let value = context.package.held(field, &Value::from(default));
             let value = tables::spelled_in(context, "", &value, &ty);
             let name = &field.name;
             out.template("or_default", &[("name", name)]);

@@ -5,7 +5,7 @@ use super::layout::{Includes, float, header_file, integer, literal, raw, source_
 use super::types::field_type_in;
 use crate::package::about;
 use crate::package::context::Context;
-use crate::package::expr::{Expr, Expressions, Record};
+use crate::package::expr::{Expr, Record};
 
 /// Generates `tables.hpp`.
 pub fn header(context: &Context<'_>) -> String {
@@ -25,7 +25,6 @@ pub fn header(context: &Context<'_>) -> String {
 /// Generates `tables.cpp`.
 pub fn source(context: &Context<'_>) -> String {
     let package = &context.package;
-    let expressions = Expressions::new(package);
     let before = "// A line for each row.\n";
     source_file(context, "tables.hpp", before, |out| {
         for table in &package.tables {
@@ -42,7 +41,7 @@ pub fn source(context: &Context<'_>) -> String {
                             for values in &table.rows {
                                 out.line(format!(
                                     "{},",
-                                    record(context, "", &expressions.record(&table.row, values))
+                                    record(context, "", &package.record(&table.row, values))
                                 ));
                             }
                         },

@@ -6,7 +6,7 @@ use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
-use crate::package::expr::{Expr, Expressions};
+use crate::package::expr::Expr;
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::marks::FieldMarks;
@@ -50,13 +50,12 @@ fn message(
     supers.extend(choices_of(context, item));
     let head = format!("public class {name} private constructor(content: Content)");
     out.block(heading(out, &head, &supers), |out| {
-        let expressions = Expressions::new(&context.package);
         for field in fields {
-            let condition = sentence(&expressions, field, fields, spelled);
+            let condition = sentence(&context.package, field, fields, spelled);
             out.documented(&facts::field_docs(&STYLE, field, condition));
             property(out, context, field);
             if let Some(default) = &field.details().default {
-                let default = expressions.held(field, &Value::from(default));
+                let default = context.package.held(field, &Value::from(default));
                 let default = expr::expression(&default, &field.ty);
                 let ty = field_type(context, field);
                 out.template(

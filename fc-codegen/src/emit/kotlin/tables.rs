@@ -4,14 +4,12 @@ use super::expr::{self, Form};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
-use crate::package::expr::{Expr, Expressions};
 use crate::package::source::Source;
 use fc_spec::model::Type;
 
 /// Generates `Tables.kt`.
 pub fn tables_file(context: &Context<'_>) -> Source {
     let mut out = context.source();
-    let expressions = Expressions::new(&context.package);
     out.docs(&Docs::said(about::TABLES));
     out.block("public object Tables", |out| {
         for table in &context.package.tables {
@@ -22,9 +20,7 @@ pub fn tables_file(context: &Context<'_>) -> Source {
                 &format!("public fun {}(): List<{row}> =", table.name),
                 "",
                 |out| {
-                    let rows = table.rows.iter();
-                    let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
-                    let rows = Expr::List(rows.collect());
+                    let rows = context.package.rows(table);
                     expr::laid_out(out, "", &rows, &Type::Json, "", Form::Chain);
                 },
             );

@@ -7,9 +7,8 @@ use super::source::{Code, Python, assign_text};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::context::Context;
-use crate::package::expr::Expressions;
 use crate::package::facts;
-use crate::package::items::{Item, Shape, Spelled};
+use crate::package::items::{Item, Package, Shape, Spelled};
 use crate::package::language::Case;
 use crate::package::marks::FieldMarks;
 use crate::package::name::free;
@@ -68,7 +67,6 @@ fn structure<'m>(
 ) {
     used.library("dataclasses", "dataclass");
     used.library("dataclasses", "field");
-    let expressions = Expressions::new(&context.package);
     out.line("@dataclass(slots=True, kw_only=True)");
     let head = format!("class {}(rt.Message)", item.ty.name);
     out.suite(&head, |out| {
@@ -80,7 +78,7 @@ fn structure<'m>(
             assign_text(out, "__example__: ClassVar[str]", &example);
             out.blank();
         }
-        let defaults = defaults(context, &expressions, fields);
+        let defaults = defaults(context, fields);
         for Default {
             name,
             constant,
@@ -102,7 +100,7 @@ fn structure<'m>(
                 used.id(&id.name);
             }
             let mut marks = vec![Code::from(field_annotation(context, field, field.optional))];
-            marks.push(key(field, fields, &expressions));
+            marks.push(key(field, fields, &context.package));
             let absent = match (field.optional, field.sensitive) {
                 (true, true) => " = field(default=None, repr=False)",
                 (true, false) => " = None",
@@ -111,7 +109,7 @@ fn structure<'m>(
             };
             let ty = Code::Call("Annotated[".to_owned(), marks, "]");
             ty.write(out, &format!("{}: ", field.name), absent);
-            let condition = sentence(&expressions, field, fields, |it| constant(it).flat());
+            let condition = sentence(&context.package, field, fields, |it| constant(it).flat());
             out.docstring(&facts::field_docs(context.style, field, condition));
             out.blank();
         }
@@ -181,15 +179,11 @@ pub fn annotation(context: &Context<'_>, ty: &Type, optional: bool) -> String {
 }
 
 /// Returns the wire form and the constraints of a field.
-fn key(
-    field: &Spelled<'_, Field>,
-    fields: &[Spelled<'_, Field>],
-    expressions: &Expressions<'_, '_>,
-) -> Code {
+fn key(field: &Spelled<'_, Field>, fields: &[Spelled<'_, Field>], package: &Package<'_>) -> Code {
     let marks = FieldMarks::build(field.of, fields);
     let values = |ty: &Type, values: &[Scalar]| {
         let values = values.iter();
-        let values = values.map(|wire| constant(&expressions.value(ty, &Value::from(wire))));
+        let values = values.map(|wire| constant(&package.value(ty, &Value::from(wire))));
         Code::tuple(values.collect())
     };
     let mut items = vec![Code::from(literal(&field.wire))];
@@ -234,11 +228,7 @@ struct Default {
 }
 
 /// Returns the defaults of a message's fields.
-fn defaults(
-    context: &Context<'_>,
-    expressions: &Expressions<'_, '_>,
-    fields: &[Spelled<'_, Field>],
-) -> Vec<Default> {
+fn defaults(context: &Context<'_>, fields: &[Spelled<'_, Field>]) -> Vec<Default> {
     let defaults = fields.iter().filter_map(|field| {
         let default = Value::from(field.details().default.as_ref()?);
         let word = field.name.trim_end_matches('_');
@@ -254,7 +244,7 @@ fn defaults(
             constant: format!("DEFAULT_{}", word.to_uppercase()),
             accessor: free(&[&format!("{word}_or_default")], taken),
             ty,
-            value: constant(&expressions.held(field, &default)).flat(),
+            value: constant(&context.package.held(field, &default)).flat(),
         })
     });
     defaults.collect()

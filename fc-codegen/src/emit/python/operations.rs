@@ -6,7 +6,6 @@ use super::protocol;
 use super::source::{Code, Python, tuple};
 use crate::package::context::{Context, page_of};
 use crate::package::docs::Docs;
-use crate::package::expr::Expressions;
 use crate::package::language::Case;
 use crate::package::name::free;
 use crate::package::process::{set_off, state};
@@ -182,10 +181,9 @@ fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Code {
 }
 
 fn states(context: &Context<'_>, set: &StateSet) -> Code {
-    let expressions = Expressions::new(&context.package);
     let ty = Type::Named(set.ty.clone());
     let values = set.values.iter().map(|wire| {
-        let value = expressions.value(&ty, &Value::from(wire));
+        let value = context.package.value(&ty, &Value::from(wire));
         constant_of(&value)
     });
     let values = Code::List("{", values.collect(), "}");

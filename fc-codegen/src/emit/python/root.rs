@@ -8,7 +8,6 @@ use super::source::{Code, Python, exported, method, sorted};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
-use crate::package::expr::{Expr, Expressions};
 use crate::package::source::Source;
 use fc_spec::model::Type;
 
@@ -161,13 +160,10 @@ pub fn call(context: &Context<'_>, package: &str) -> String {
 pub fn tables(context: &Context<'_>) -> String {
     let mut constants = Constants::default();
     let mut body = context.source();
-    let expressions = Expressions::new(&context.package);
     for table in &context.package.tables {
         let row = context.name_of(&table.row);
         constants.types.insert(row.to_owned());
-        let rows = table.rows.iter();
-        let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
-        let rows = constants.value(&Expr::List(rows.collect()));
+        let rows = constants.value(&context.package.rows(table));
         body.gap();
         let open = format!("def {}(", table.name);
         method(

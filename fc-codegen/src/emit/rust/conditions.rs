@@ -3,14 +3,15 @@
 use super::enums::enum_wire;
 use super::messages::constant;
 use crate::package::conditions::Asked;
-use crate::package::expr::{Expr, Expressions};
+use crate::package::expr::Expr;
+use crate::package::items::Package;
 use fc_spec::model::{Type, Value};
 
 /// Returns the attribute of a conditional field: `when(mode = 2 | 3)`.
-pub fn attribute(expressions: &Expressions<'_, '_>, condition: &Asked<'_, '_>) -> String {
+pub fn attribute(package: &Package<'_>, condition: &Asked<'_, '_>) -> String {
     let asked = condition.each(" | ", |other, wire| match &other.ty {
         Type::Named(_) => enum_wire(wire),
-        ty => constant(&expressions.value(ty, &Value::from(wire))),
+        ty => constant(&package.value(ty, &Value::from(wire))),
     });
     let asked = asked.iter().map(|(name, any)| format!("{name} = {any}"));
     let asked: Vec<String> = asked.collect();

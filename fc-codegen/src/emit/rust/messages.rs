@@ -11,7 +11,7 @@ use super::source::Source;
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::docs::Docs;
-use crate::package::expr::{Expr, Expressions};
+use crate::package::expr::Expr;
 use crate::package::facts;
 use crate::package::items::{Call, Item, Module, Shape, Spelled};
 use crate::package::marks::FieldMarks;
@@ -143,7 +143,6 @@ fn structure<'m>(
         );
     }
 
-    let expressions = Expressions::new(&context.package);
     // The struct may gain an optional key.
     out.line("#[non_exhaustive]");
     out.block(format!("pub struct {}", item.ty.name), |out| {
@@ -151,15 +150,15 @@ fn structure<'m>(
             used.ty(&field.ty);
             used.ids
                 .extend(context.package.id_of(field).map(|id| id.name.to_string()));
-            let condition = sentence(&expressions, field, fields, conditions::spelled);
+            let condition = sentence(&context.package, field, fields, conditions::spelled);
             out.docs(&facts::field_docs(context.style, field, condition));
             let name = &field.name;
             let marks = FieldMarks::build(field.of, fields);
             let mut attributes = field_attributes(field, &marks);
             let condition = marks.condition.as_ref();
-            attributes.extend(condition.map(|it| conditions::attribute(&expressions, it)));
+            attributes.extend(condition.map(|it| conditions::attribute(&context.package, it)));
             if let Some(default) = &field.details().default {
-                let default = expressions.held(field, &Value::from(default));
+                let default = context.package.held(field, &Value::from(default));
                 attributes.push(format!("default = {}", constant(&default)));
             }
             if !attributes.is_empty() {

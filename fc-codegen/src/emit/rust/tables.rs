@@ -5,7 +5,7 @@ use super::context::Context;
 use super::source::Source;
 use crate::package::about;
 use crate::package::docs::Docs;
-use crate::package::expr::{Expr, Expressions, Record};
+use crate::package::expr::{Expr, Record};
 use crate::package::items::Spelled;
 use fc_spec::model::Table;
 use std::collections::BTreeSet;
@@ -84,10 +84,7 @@ fn table_function(
     let row = &package.item(&table.row).ty.name;
     used.types.insert(row.to_string());
     out.block(format!("pub fn {}() -> Vec<{row}>", table.name), |out| {
-        let expressions = Expressions::new(package);
-        let rows = table.rows.iter();
-        let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
-        let rows = Expr::List(rows.collect());
+        let rows = package.rows(table);
         used.all_in(&rows);
         out.line(spelled(&rows, Place::Inside, 4));
     });

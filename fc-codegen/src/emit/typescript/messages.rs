@@ -11,7 +11,7 @@ use super::{client, robot};
 use crate::package::about;
 use crate::package::conditions::sentence;
 use crate::package::docs::Docs;
-use crate::package::expr::{Expr, Expressions};
+use crate::package::expr::Expr;
 use crate::package::facts;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::types::parts;
@@ -114,10 +114,9 @@ fn structure(
         None => facts::type_docs(context, item),
     };
     out.docs(&docs);
-    let expressions = Expressions::new(&context.package);
     out.block(format!("export interface {}", item.ty.name), |out| {
         for field in fields {
-            let condition = sentence(&expressions, field, fields, spelled);
+            let condition = sentence(&context.package, field, fields, spelled);
             let mut docs = facts::field_docs(context.style, field, condition);
             deprecated(&mut docs, field.details().deprecated.as_ref());
             out.docs(&docs);

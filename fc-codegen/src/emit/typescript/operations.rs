@@ -9,7 +9,7 @@ use super::layout::{Layout, Members};
 use super::messages::end;
 use super::source::{Source, float, head, literal, named};
 use crate::package::docs::Docs;
-use crate::package::expr::{Expr, Expressions};
+use crate::package::expr::Expr;
 use crate::package::items::{Call, Shape};
 use crate::package::language::Role;
 use crate::package::process::{is_followed, set_off};
@@ -179,7 +179,7 @@ fn example(
         return Layout::word("() => ({})");
     };
     let value = samples.body(operation, direction, Profile::Example);
-    let record = Expressions::new(&context.package).record(&body.ty, &value);
+    let record = context.package.record(&body.ty, &value);
     let value = constant(context, &Expr::Record(record), false);
     Layout::Around("() => (".into(), Box::new(value), ")")
 }

@@ -5,7 +5,6 @@ use super::context::{Context, imported, is_large, is_safe, own};
 use super::group::Group;
 use super::layout::{Layout, Members};
 use super::source::{head, named};
-use crate::package::expr::Expressions;
 use crate::package::items::{Item, Shape, Spelled};
 use crate::package::language::Case;
 use crate::package::marks::FieldMarks;
@@ -27,14 +26,13 @@ pub fn file(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -> St
     for (from, names) in context.imports(group.id, items.iter().flat_map(parts)) {
         named(&mut out, "import", names, &format!("../{from}/schemas.ts"));
     }
-    let expressions = Expressions::new(&context.package);
     for item in items {
         out.blank();
         let name = &item.ty.name;
         out.line(format!("/** {{@link messages.{name}}} */"));
         let kind = own(context, kind(item));
         let head = format!("export const {name}: {kind}<messages.{name}> = ");
-        schema(context, &expressions, item).write(&mut out, &head, "");
+        schema(context, item).write(&mut out, &head, "");
     }
     out.finish()
 }
@@ -48,7 +46,7 @@ fn kind(item: &Item<'_>) -> &'static str {
     }
 }
 
-fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_>, item: &Item<'_>) -> Layout {
+fn schema(context: &Context<'_>, item: &Item<'_>) -> Layout {
     let name = &*item.ty.name;
     let is = |word| {
         Members::default()
@@ -58,7 +56,7 @@ fn schema(context: &Context<'_>, expressions: &Expressions<'_, '_>, item: &Item<
     let members = match &item.shape {
         Shape::Record(_, fields) => {
             let schemas = fields.iter();
-            let schemas = schemas.map(|it| (&*it.name, field(context, expressions, fields, it)));
+            let schemas = schemas.map(|it| (&*it.name, field(context, fields, it)));
             is("struct").with("fields", Layout::lines(schemas))
         }
         Shape::Enum(shape, values) => is("enum")
@@ -107,7 +105,6 @@ fn process(ty: &str, shape: &EnumType, values: &[Spelled<'_, EnumValue>]) -> Opt
 
 fn field(
     context: &Context<'_>,
-    expressions: &Expressions<'_, '_>,
     fields: &[Spelled<'_, Field>],
     field: &Spelled<'_, Field>,
 ) -> Layout {
@@ -115,7 +112,7 @@ fn field(
     let marks = FieldMarks::build(field.of, fields);
     let large = is_large(context, field);
     let held = |field: &Field, wire: &Scalar| {
-        let value = expressions.value(field.ty.item(), &Value::from(wire));
+        let value = context.package.value(field.ty.item(), &Value::from(wire));
         constant(context, &value, is_large(context, field))
     };
     let mut members = Members::default()

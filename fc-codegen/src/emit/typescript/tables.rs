@@ -7,7 +7,6 @@ use super::layout::Layout;
 use super::operations::typed;
 use super::source::{head, literal, named, nothing};
 use crate::package::about;
-use crate::package::expr::{Expr, Expressions};
 use crate::sample::Samples;
 use fc_spec::model::Value;
 
@@ -23,17 +22,14 @@ pub fn file(context: &Context<'_>) -> String {
         return nothing(out);
     }
     out.line("import * as messages from './messages.ts'");
-    let expressions = Expressions::new(&context.package);
     for table in tables {
         out.documented(&about::table(context, table.of));
-        let rows = table.rows.iter();
-        let rows = rows.map(|row| Expr::Record(expressions.record(&table.row, row)));
         let head = format!(
             "export const {}: readonly messages.{}[] = ",
             table.name,
             context.name_of(&table.row)
         );
-        constant(context, &Expr::List(rows.collect()), false).write(&mut out, &head, "");
+        constant(context, &context.package.rows(table), false).write(&mut out, &head, "");
     }
     out.finish()
 }
@@ -50,7 +46,6 @@ pub fn defaults(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -
         "../../../src/runtime.ts",
     );
     out.line("import * as messages from '../../messages.ts'");
-    let expressions = Expressions::new(&context.package);
     for item in group.items() {
         let fields = item.fields().iter().filter(|it| has_default(it));
         let (keys, members): (Vec<String>, Vec<_>) = fields
@@ -58,7 +53,7 @@ pub fn defaults(context: &Context<'_>, _: &Samples<'_>, group: &Group<'_, '_>) -
                 let default = Value::from(field.details().default.as_ref()?);
                 let value = constant(
                     context,
-                    &expressions.held(field, &default),
+                    &context.package.held(field, &default),
                     is_large(context, field),
                 );
                 Some((literal(&field.name), (&*field.name, value)))
