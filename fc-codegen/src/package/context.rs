@@ -8,8 +8,8 @@ use crate::product::Product;
 use crate::sample::{Profile, Samples};
 use crate::target::Targets;
 use fc_spec::model::{
-    Accepted, Direction, EnumType, EnumValue, Kind, Lang, Languages, Location, Model, Operation,
-    StructRef, Type, TypeRef,
+    Accepted, Direction, Entity, EnumType, EnumValue, Kind, Lang, Languages, Location, Model,
+    Operation, StructRef, Type, TypeRef,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -94,6 +94,12 @@ impl<'m> Context<'m> {
     /// Returns the reports that have a code.
     pub fn reports(&self) -> Vec<Call<'_>> {
         self.package.calls(Kind::Report)
+    }
+
+    /// Returns the id types of the package, each with the type of its value.
+    pub fn ids(&self) -> impl Iterator<Item = (&Spelled<'m, Entity>, &'m Type)> {
+        let ids = self.package.ids.iter();
+        ids.filter_map(|id| Some((id, self.model().id_type(id)?)))
     }
 
     /// Returns the name of a message type.

@@ -13,9 +13,7 @@ pub fn path(context: &Context<'_>) -> String {
 
 /// Generates `ids.hpp`.
 pub fn header(context: &Context<'_>) -> String {
-    let ids = context.package.ids.iter();
-    let ids = ids.filter_map(|id| Some((id, context.model().id_type(id)?)));
-    let ids: Vec<_> = ids.collect();
+    let ids: Vec<_> = context.ids().collect();
     let mut includes = Includes::new(context, &["functional"], &[], &["id"]);
     for (_, held) in &ids {
         includes.standard(if **held == Type::String {

@@ -8,10 +8,7 @@ use crate::package::source::Source;
 /// Generates `Ids.kt`. It is empty without id types.
 pub fn ids_file(context: &Context<'_>) -> Source {
     let mut out = context.source();
-    for id in &context.package.ids {
-        let Some(held) = context.model().id_type(id) else {
-            continue;
-        };
+    for (id, held) in context.ids() {
         let (name, held) = (&id.name, type_of(context, held));
         out.documented(&about::id(context, id.of));
         out.line(format!(

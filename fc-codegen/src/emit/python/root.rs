@@ -130,16 +130,14 @@ pub fn operations(context: &Context<'_>) -> String {
 pub fn ids(context: &Context<'_>) -> String {
     let mut out = context.source();
     out.template("ids", &[]);
-    let ids = context.package.ids.iter();
-    let ids = ids.filter_map(|id| Some((id, context.model().id_type(id)?)));
-    if ids.clone().any(|(_, held)| *held != Type::String) {
+    if context.ids().any(|(_, held)| *held != Type::String) {
         out.blank();
         out.line("import fc_runtime as rt");
     }
     out.blank();
     let names = context.package.ids.iter().map(|id| &*id.name);
     exported(&mut out, &names.collect::<Vec<_>>());
-    for (id, held) in ids {
+    for (id, held) in context.ids() {
         let held = annotation(context, held, false);
         out.blank();
         out.line(format!("{0} = NewType(\"{0}\", {held})", id.name));

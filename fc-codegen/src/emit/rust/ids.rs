@@ -8,10 +8,7 @@ use fc_spec::model::Type;
 pub fn ids_file(context: &Context<'_>) -> String {
     let mut out = context.source();
     out.template("ids", &[]);
-    for id in &context.package.ids {
-        let Some(held) = context.model().id_type(id) else {
-            continue;
-        };
+    for (id, held) in context.ids() {
         out.documented(&about::id(context, id.of));
         let mut derives = vec!["Clone"];
         derives.extend((*held != Type::String).then_some("Copy"));

@@ -15,10 +15,7 @@ pub fn file(context: &Context<'_>) -> String {
         ],
     );
     named(&mut out, "import type", ["Id"], "../src/runtime.ts");
-    for id in &context.package.ids {
-        let Some(held) = context.model().id_type(id) else {
-            continue;
-        };
+    for (id, held) in context.ids() {
         let (name, held) = (&id.name, type_of(context, held, is_64_bit(held)));
         out.documented(&about::id(context, id.of));
         let values = [
