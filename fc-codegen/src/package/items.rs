@@ -409,9 +409,9 @@ fn modules<'m>(
 ) -> (Vec<Module<'m>>, Vec<Place>) {
     let homes: HashSet<_> = items.iter().map(|it| it.ty.of.group.as_deref()).collect();
     let shared = free(&SHARED, |id| groups.iter().any(|group| group.of.id == id));
-    let name = language.spelling(Role::Module, &shared);
+    let name = language.spelled(Role::Module, &shared);
     let shared = Module {
-        name: Cow::Owned(name.unwrap_or_else(|name| name).into_owned()),
+        name: Cow::Owned(name.into_owned()),
         id: shared,
         group: None,
         items: Vec::new(),

@@ -12,8 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns the namespace and folder of the package.
 pub fn namespace<'c>(context: &'c Context<'_>) -> Cow<'c, str> {
-    let (Ok(name) | Err(name)) = CPP.spelling(Role::Module, &context.model().protocol.id);
-    name
+    CPP.spelled(Role::Module, &context.model().protocol.id)
 }
 
 /// Returns the C++ type of a type of the spec, inside the package's namespace.

@@ -11,8 +11,7 @@ use crate::package::source::Source;
 
 /// Returns the name of a group's part of a class: `UpperBodyClient` of `Client`.
 pub fn part_name(group: &Group<'_, '_>, whole: &str) -> String {
-    let (Ok(stem) | Err(stem)) = KOTLIN.spelling(Role::Type, group.id);
-    [&stem, whole].concat()
+    [&KOTLIN.spelled(Role::Type, group.id), whole].concat()
 }
 
 /// Writes an interface with a group's part of `whole`.

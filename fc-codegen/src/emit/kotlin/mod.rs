@@ -32,11 +32,8 @@ use text::STYLE;
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context =
         &Context::new(model, targets.naming(&KOTLIN), &STYLE).of_target(targets, Product::Kotlin);
-    let id = &model.protocol.id;
     // A keyword cannot be the name of a package either.
-    let package = KOTLIN
-        .spelling(Role::Module, id)
-        .unwrap_or_else(|name| name);
+    let package = KOTLIN.spelled(Role::Module, &model.protocol.id);
     let groups = Group::all(&context.package);
     let wholes = [
         ("Protocol", protocol::protocol_file(context, &groups)),
@@ -168,8 +165,7 @@ fn head(context: &Context<'_>, package: &str, body: &str, further: &[&str]) -> S
 
 /// Returns a stream's name as a part of a method name: `MapImage` in `SubscribeMapImage`.
 fn method_of(stream: &crate::package::items::Spelled<'_, fc_spec::model::Operation>) -> String {
-    let name = KOTLIN.spelling(Role::Type, &stream.of.name);
-    name.unwrap_or_else(|name| name).into_owned()
+    KOTLIN.spelled(Role::Type, &stream.of.name).into_owned()
 }
 
 #[cfg(test)]

@@ -12,7 +12,6 @@ use crate::package::items::Call;
 use crate::package::language::{KOTLIN, Role};
 use crate::package::ranges::{UNKNOWN, pass_through};
 use crate::package::source::Source;
-use std::borrow::Cow;
 
 /// Generates `Robot.kt`.
 pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
@@ -20,9 +19,9 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let handlers = parts(groups, "Handlers", has_commands);
     let ranges = pass_through(context).into_iter();
     let ranges: Vec<_> = ranges
-        .map(|(words, range)| (method(&words).into_owned(), range))
+        .map(|(words, range)| (KOTLIN.spelled(Role::Function, &words).into_owned(), range))
         .collect();
-    let unknown = method(UNKNOWN);
+    let unknown = KOTLIN.spelled(Role::Function, UNKNOWN);
     let mut docs = Docs::said([
         "完整的机器人：处理规范中的全部指令。规范新增一条指令，这里就缺少一个方法，编译器会指出。只实现了一部分指令的机器人，改为实现 `PartialRobot`。",
         "A complete robot, which handles all commands of the spec. When the spec gains a command, the compiler reports a missing method. A robot with some of the commands implements `PartialRobot`, which refuses the others as not implemented.",
@@ -130,12 +129,6 @@ fn served(out: &mut Source, group: &Group<'_, '_>) {
             }
         }
     });
-}
-
-/// Returns the name of a method, from its words.
-fn method(words: &str) -> Cow<'_, str> {
-    let (Ok(name) | Err(name)) = KOTLIN.spelling(Role::Function, words);
-    name
 }
 
 /// Writes a method for requests without a type. The default refuses them.

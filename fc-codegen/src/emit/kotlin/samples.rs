@@ -209,7 +209,5 @@ fn launched(step: SampleStep<'_>) -> String {
 }
 
 fn function_name(step: SampleStep<'_>) -> String {
-    let words = step.name();
-    let (Ok(name) | Err(name)) = KOTLIN.spelling(Role::Function, &words);
-    name.into_owned()
+    KOTLIN.spelled(Role::Function, &step.name()).into_owned()
 }

@@ -31,7 +31,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &Context::new(model, targets.naming(&PYTHON), &source::PYTHON)
         .of_target(targets, Product::Python);
     let plan = &ModulePlan::build(context);
-    let (Ok(package) | Err(package)) = PYTHON.spelling(Role::Module, &model.protocol.id);
+    let package = PYTHON.spelled(Role::Module, &model.protocol.id);
     let ids = !context.package.ids.is_empty();
     let all = "the spec";
     let source = |path: &str| format!("src/{package}/{path}");

@@ -57,8 +57,7 @@ pub fn own(context: &Context<'_>, name: &str) -> String {
 
 /// Spells a name that needs no check for clashes.
 pub fn spelled(role: Role, words: &str) -> String {
-    let (Ok(name) | Err(name)) = TYPESCRIPT.spelling(role, words);
-    name.into_owned()
+    TYPESCRIPT.spelled(role, words).into_owned()
 }
 
 /// Returns a runtime type as an import names it.

@@ -152,6 +152,13 @@ impl Language {
         self.with_ids.unwrap_or(self)
     }
 
+    /// Returns a name of the spec in this language. It is unescaped if no escaped form exists.
+    #[must_use]
+    pub fn spelled<'n>(&self, role: Role, name: &'n str) -> Cow<'n, str> {
+        let (Ok(name) | Err(name)) = self.spelling(role, name);
+        name
+    }
+
     /// Returns a name of the spec in this language. Reserved words are escaped.
     ///
     /// # Errors
