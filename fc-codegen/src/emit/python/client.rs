@@ -30,11 +30,8 @@ pub fn any_report(out: &mut Source, group: &NamedGroup<'_, '_>) {
 
 /// Writes the methods of a group's commands.
 pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    let Some(name) = group.part(GroupPart::Calls) else {
-        return;
-    };
-    let about = ["Client", "指令", "commands"];
-    part_of(out, group, name, "rt.Calls", about, |out| {
+    let (part, about) = (GroupPart::Calls, ["Client", "指令", "commands"]);
+    part_of(out, group, part, "rt.Calls", about, |out| {
         for command in &group.commands {
             out.blank();
             call(out, context, command);
@@ -150,11 +147,8 @@ fn follow_docs<'c>(
 
 /// Writes the methods of a group's commands without `async`. Each waits for the response.
 pub fn sync_calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    let Some(name) = group.part(GroupPart::SyncCalls) else {
-        return;
-    };
-    let about = ["sync.Client", "指令", "commands"];
-    part_of(out, group, name, "rt.SyncCalls", about, |out| {
+    let (part, about) = (GroupPart::SyncCalls, ["sync.Client", "指令", "commands"]);
+    part_of(out, group, part, "rt.SyncCalls", about, |out| {
         for command in &group.commands {
             sync_call(out, context, command);
         }
@@ -201,11 +195,8 @@ fn sync_call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
 
 /// Writes the methods of a group's streams. The robot's streams come first.
 pub fn streams(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    let Some(name) = group.part(GroupPart::Streams) else {
-        return;
-    };
-    let about = ["Streams", "数据流", "streams"];
-    part_of(out, group, name, "rt.Streams", about, |out| {
+    let (part, about) = (GroupPart::Streams, ["Streams", "数据流", "streams"]);
+    part_of(out, group, part, "rt.Streams", about, |out| {
         for stream in group.subscribed() {
             out.blank();
             subscribe(out, context, stream);

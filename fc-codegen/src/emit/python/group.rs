@@ -78,17 +78,20 @@ fn uses<'p>(used: &mut Used<'p>, context: &'p Context<'_>, group: &NamedGroup<'_
     }
 }
 
-/// Writes a class with the group's part of another class.
+/// Writes a class with the group's part of another class, if the group has the part.
 ///
 /// `about` contains the name of that class and its members in both languages: `["Client", "指令", "commands"]`.
 pub fn part_of(
     out: &mut Source,
     group: &NamedGroup<'_, '_>,
-    name: &str,
+    part: GroupPart,
     base: &str,
     about: [&str; 3],
     body: impl FnOnce(&mut Source),
 ) {
+    let Some(name) = group.part(part) else {
+        return;
+    };
     let (id, [class, zh, en]) = (group.id, about);
     let zh = format!("`{class}` 的一部分：`{id}` 组的{zh}。");
     let en = format!("Part of `{class}`: the {en} of the group `{id}`.");

@@ -21,11 +21,8 @@ fn handler(out: &mut Source, command: &Call<'_>, body: impl FnOnce(&mut Source))
 
 /// Writes the methods that a complete robot must implement.
 pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    let Some(name) = group.part(GroupPart::Handlers) else {
-        return;
-    };
-    let about = ["Robot", "指令", "commands"];
-    part_of(out, group, name, "ABC", about, |out| {
+    let (part, about) = (GroupPart::Handlers, ["Robot", "指令", "commands"]);
+    part_of(out, group, part, "ABC", about, |out| {
         for command in &group.commands {
             let operation = command.operation;
             let docs = facts::command_docs(context, operation, |error| {
@@ -40,14 +37,14 @@ pub fn handlers(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
 
 /// Writes the methods of a partial robot. Each method is optional.
 pub fn partial_handlers(out: &mut Source, group: &NamedGroup<'_, '_>) {
-    let (Some(name), Some(base)) = (
-        group.part(GroupPart::PartialHandlers),
-        group.part(GroupPart::Handlers),
-    ) else {
+    let Some(base) = group.part(GroupPart::Handlers) else {
         return;
     };
-    let about = ["PartialRobot", "指令", "commands"];
-    part_of(out, group, name, base, about, |out| {
+    let (part, about) = (
+        GroupPart::PartialHandlers,
+        ["PartialRobot", "指令", "commands"],
+    );
+    part_of(out, group, part, base, about, |out| {
         for command in &group.commands {
             out.blank();
             out.line("@rt.left_out");
@@ -61,11 +58,8 @@ pub fn partial_handlers(out: &mut Source, group: &NamedGroup<'_, '_>) {
 
 /// Writes the methods that push reports.
 pub fn reporter(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    let Some(name) = group.part(GroupPart::Reporter) else {
-        return;
-    };
-    let about = ["Reporter", "上报", "reports"];
-    part_of(out, group, name, "rt.Reporter", about, |out| {
+    let (part, about) = (GroupPart::Reporter, ["Reporter", "上报", "reports"]);
+    part_of(out, group, part, "rt.Reporter", about, |out| {
         for report in &group.reports {
             let operation = report.operation;
             let docs = facts::method_docs(context, operation, |docs| {
@@ -88,11 +82,8 @@ pub fn reporter(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
 
 /// Writes the methods that send the robot's streams.
 pub fn streamer(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>) {
-    let Some(name) = group.part(GroupPart::Streamer) else {
-        return;
-    };
-    let about = ["Streamer", "数据流", "streams"];
-    part_of(out, group, name, "rt.Streamer", about, |out| {
+    let (part, about) = (GroupPart::Streamer, ["Streamer", "数据流", "streams"]);
+    part_of(out, group, part, "rt.Streamer", about, |out| {
         for stream in group.subscribed() {
             let mut docs = facts::method_docs(context, stream.of, |_| ());
             docs.paragraph("Returns the number of data connections that took it.");
