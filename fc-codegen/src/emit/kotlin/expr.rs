@@ -30,7 +30,7 @@ fn flat(value: &Expr<'_>, ty: &Type, form: Form) -> String {
         Expr::Float(value) if *ty == Type::Float(FloatKind::F32) => format!("{value:?}f"),
         Expr::Float(value) => format!("{value:?}"),
         Expr::Text(text) => literal(text),
-        Expr::Bytes(bytes) => format!("Bytes.of(byteArrayOf({}))", signed(bytes).join(", ")),
+        Expr::Bytes(value) => bytes(value),
         Expr::Json(text) => format!("Json.of({})", literal(text)),
         Expr::Id(id, value) => format!("{id}({})", flat(value, ty.item(), form)),
         Expr::List(items) => {
@@ -47,6 +47,11 @@ fn flat(value: &Expr<'_>, ty: &Type, form: Form) -> String {
             format!("{}.of({})", item.ty.name, expression(value, &Type::Json))
         }
     }
+}
+
+/// Returns bytes on one line.
+pub fn bytes(bytes: &[u8]) -> String {
+    format!("Bytes.of(byteArrayOf({}))", signed(bytes).join(", "))
 }
 
 /// Converts bytes to the signed bytes of the JVM.

@@ -79,63 +79,29 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 /// The file of the types that several groups share.
 const SHARED: &str = "SharedTypes";
 
-/// The imports of the package. Names in a spec must differ from them.
-const IMPORTED: &[&str] = &[
-    "fc.runtime.AckPolicy",
-    "fc.runtime.Acknowledgement",
-    "fc.runtime.Audience",
-    "fc.runtime.Bytes",
-    "fc.runtime.Cadence",
-    "fc.runtime.CallOptions",
-    "fc.runtime.ChoiceType",
-    "fc.runtime.ClientConfig",
-    "fc.runtime.Command",
-    "fc.runtime.Connection",
-    "fc.runtime.ConnectionState",
-    "fc.runtime.Content",
-    "fc.runtime.Context",
-    "fc.runtime.DataConnection",
-    "fc.runtime.DeclaredError",
-    "fc.runtime.Defaults",
-    "fc.runtime.DigestAlgorithm",
-    "fc.runtime.Effect",
-    "fc.runtime.EnumType",
-    "fc.runtime.EnvelopeRole",
-    "fc.runtime.Following",
-    "fc.runtime.HeaderField",
-    "fc.runtime.HeaderLayout",
-    "fc.runtime.HeaderRole",
-    "fc.runtime.Id",
-    "fc.runtime.IntEnumType",
-    "fc.runtime.IntValue",
-    "fc.runtime.Json",
-    "fc.runtime.Limits",
-    "fc.runtime.Loss",
-    "fc.runtime.Message",
-    "fc.runtime.MessageBuilder",
-    "fc.runtime.MessageType",
-    "fc.runtime.Protocol",
-    "fc.runtime.RawRequest",
-    "fc.runtime.Refusal",
-    "fc.runtime.Report",
-    "fc.runtime.Reports",
-    "fc.runtime.ResultText",
-    "fc.runtime.Results",
-    "fc.runtime.Server",
-    "fc.runtime.Service",
-    "fc.runtime.State",
-    "fc.runtime.StateOrder",
-    "fc.runtime.Steps",
-    "fc.runtime.Subscription",
-    "fc.runtime.TextEnumType",
-    "fc.runtime.TextValue",
-    "fc.runtime.Types",
-    "fc.runtime.sameOrUnsaid",
+/// The imports of the package from the runtime. Names in a spec must differ from all imports.
+const RUNTIME: &str = "\
+    AckPolicy Acknowledgement Audience Bytes Cadence CallOptions ChoiceType ClientConfig Command \
+    Connection ConnectionState Content Context DataConnection DeclaredError Defaults DigestAlgorithm \
+    Effect EnumType EnvelopeRole Following HeaderField HeaderLayout HeaderRole Id IntEnumType IntValue \
+    Json Limits Loss Message MessageBuilder MessageType Protocol RawRequest Refusal Report Reports \
+    ResultText Results Server Service State StateOrder Steps Subscription TextEnumType TextValue Types \
+    sameOrUnsaid";
+
+/// The other imports of the package.
+const LIBRARIES: [&str; 4] = [
     "java.math.BigInteger",
     "java.util.concurrent.CompletableFuture",
     "java.util.concurrent.CompletionStage",
     "kotlinx.coroutines.flow.Flow",
 ];
+
+/// Returns the paths of all imports of the package.
+fn imported() -> impl Iterator<Item = String> {
+    let runtime = RUNTIME.split_whitespace();
+    let runtime = runtime.map(|name| format!("fc.runtime.{name}"));
+    runtime.chain(LIBRARIES.map(str::to_owned))
+}
 
 /// Returns the head of a file. `further` are additional imports.
 ///
@@ -153,7 +119,7 @@ fn head(context: &Context<'_>, package: &str, body: &str, further: &[&str]) -> S
     out.blank();
     out.line(format!("package {package}"));
     out.blank();
-    for path in IMPORTED.iter().chain(further) {
+    for path in imported().chain(further.iter().map(|&path| path.to_owned())) {
         let name = path.rsplit('.').next().unwrap_or_default();
         if words.contains(name) {
             out.line(format!("import {path}"));
@@ -175,7 +141,7 @@ mod tests {
     /// An import takes precedence over the types of the package, so no type of a spec may have its name.
     #[test]
     fn imported_names_are_reserved() {
-        for path in IMPORTED {
+        for path in imported() {
             let name = path.rsplit('.').next().unwrap_or_default();
             let is_type = name.starts_with(|first: char| first.is_ascii_uppercase());
             let is_kept = KOTLIN.spelling(Role::Type, name).is_err();

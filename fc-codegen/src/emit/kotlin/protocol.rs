@@ -1,5 +1,6 @@
 //! The protocol: header, envelopes, result codes, ports and limits.
 
+use super::expr::bytes;
 use super::group::parts;
 use super::text::{integer, literal, plain_codec, type_of};
 use crate::package::about;
@@ -115,14 +116,6 @@ fn operations(out: &mut Source, groups: &[Group<'_, '_>]) {
             }
         });
     }
-}
-
-fn bytes(bytes: &[u8]) -> String {
-    let bytes: Vec<String> = bytes
-        .iter()
-        .map(|byte| byte.cast_signed().to_string())
-        .collect();
-    format!("Bytes.of(byteArrayOf({}))", bytes.join(", "))
 }
 
 fn header(field: &HeaderField) -> String {
