@@ -1,11 +1,11 @@
 //! `client.rs`: the app's stub, which the files of the groups extend, and one enum over all reports.
 
 use super::context::{Context, message};
+use super::enums::other_name;
 use super::source::Source;
 use super::streams;
 use crate::package::docs::Docs;
 use crate::package::items::Call;
-use crate::package::name::free;
 use fc_spec::model::Side;
 
 /// Generates `client.rs`.
@@ -59,8 +59,8 @@ fn any_report(out: &mut Source, reports: &[Call<'_>]) {
             out.docs(&Docs::titled(&report.operation.title));
             out.line(format!("{}({}),", ty.ty.name, message(ty)));
         }
-        let taken = |name: &str| reports.iter().any(|report| report.request.ty.name == name);
-        let unknown = free(&["Unknown", "Other", "Unlisted"], taken);
+        let unknown =
+            other_name(|name| reports.iter().any(|report| report.request.ty.name == name));
         out.template("unknown_report", &[("name", &unknown)]);
     });
 }

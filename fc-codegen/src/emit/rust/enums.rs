@@ -43,17 +43,21 @@ pub fn enumeration(
             out.line(format!("{},", value.name));
         }
         if !shape.closed {
-            let taken = |name: &str| values.iter().any(|value| value.name == name);
-            let other = free(&["Unknown", "Other", "Unlisted"], taken);
-            let values = [
-                ("zh", "值"),
-                ("en", "value"),
-                ("other", &*other),
-                ("repr", rust),
-            ];
-            out.template("other", &values);
+            let other = other_name(|name| values.iter().any(|value| value.name == name));
+            other_variant(out, &other, ["值", "value"], rust);
         }
     });
+}
+
+/// Returns the name of the variant for other values, which is not taken.
+pub fn other_name(is_taken: impl Fn(&str) -> bool) -> String {
+    free(&["Unknown", "Other", "Unlisted"], is_taken)
+}
+
+/// Writes the variant for other values. `zh` and `en` are the word for a value.
+pub fn other_variant(out: &mut Source, name: &str, [zh, en]: [&str; 2], repr: &str) {
+    let values = [("zh", zh), ("en", en), ("other", name), ("repr", repr)];
+    out.template("other", &values);
 }
 
 /// Returns the derive attributes of a value.

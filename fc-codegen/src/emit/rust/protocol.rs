@@ -1,6 +1,7 @@
 //! `protocol.rs`: frame header, envelopes, result codes, and the protocol with its numbers.
 
 use super::context::{Context, page_of};
+use super::enums::{other_name, other_variant};
 use super::literal::literal;
 use super::source::Source;
 use crate::package::about;
@@ -9,7 +10,6 @@ use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::Spelled;
 use crate::package::language::Case;
-use crate::package::name::free;
 use crate::package::wire::WireFacts;
 use fc_spec::model::{
     DigestAlgorithm, Direction, EnvelopeField, HeaderField, HeaderQuirk, HeaderType,
@@ -244,8 +244,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
     let docs = about::results(context);
     out.docs(&docs);
     let results = &context.package.results;
-    let taken = |name: &str| results.iter().any(|result| result.name == name);
-    let other = free(&["Unknown", "Other", "Unlisted"], taken);
+    let other = other_name(|name| results.iter().any(|result| result.name == name));
     out.line("#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, OpenEnum)]");
     out.line("#[fc(repr = i64)]");
     out.block("pub enum ResultCode", |out| {
@@ -254,13 +253,7 @@ fn results(out: &mut Source, context: &Context<'_>) {
             out.line(format!("#[fc(value = {})]", result.code));
             out.line(format!("{},", result.name));
         }
-        let values = [
-            ("zh", "结果码"),
-            ("en", "code"),
-            ("other", &*other),
-            ("repr", "i64"),
-        ];
-        out.template("other", &values);
+        other_variant(out, &other, ["结果码", "code"], "i64");
     });
     out.template("text_of_result", &[]);
     out.deeper(3, |out| {
@@ -279,8 +272,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
         return;
     }
     out.template("stream_code", &[]);
-    let taken = |name: &str| streams.iter().any(|stream| stream.name == name);
-    let other = free(&["Unknown", "Other", "Unlisted"], taken);
+    let other = other_name(|name| streams.iter().any(|stream| stream.name == name));
     out.block("pub enum StreamCode", |out| {
         for stream in streams {
             let mut docs = facts::operation_docs(stream);
@@ -290,13 +282,7 @@ fn streams(out: &mut Source, context: &Context<'_>) {
             out.line(format!("#[fc(value = {})]", stream.code.spelling));
             out.line(format!("{},", stream.name));
         }
-        let values = [
-            ("zh", "功能码"),
-            ("en", "code"),
-            ("other", &*other),
-            ("repr", "u16"),
-        ];
-        out.template("other", &values);
+        other_variant(out, &other, ["功能码", "code"], "u16");
     });
 }
 

@@ -58,19 +58,12 @@ fn imports(out: &mut Source, context: &Context<'_>, protocol: &str, commands: &[
     out.import("fc_runtime", &runtime);
 }
 
-/// Returns the start, the parameters and the end of a method's signature.
-pub fn signature(
-    name: &str,
-    context: &str,
-    request: &str,
-    response: &str,
-    refusal: &str,
-) -> (String, [String; 3], String) {
-    (
-        format!("async fn {name}("),
-        ["&self".to_owned(), context.to_owned(), request.to_owned()],
-        format!(") -> Result<{response}, {refusal}>"),
-    )
+/// Writes the signature of a method with these types of its context, request, response and refusal.
+pub fn signature(out: &mut Source, name: &str, types: [&str; 4], end: &str) {
+    let [context, request, response, refusal] = types;
+    let open = format!("async fn {name}(");
+    let close = format!(") -> Result<{response}, {refusal}>{end}");
+    out.list(&open, &["&self", context, request], &close);
 }
 
 fn robot(
@@ -89,14 +82,8 @@ fn robot(
             });
             out.documented(&docs);
             let request = format!("request: {}", message(command.request));
-            let (open, params, close) = signature(
-                command.method,
-                &cx,
-                &request,
-                &message(command.response),
-                "Refusal",
-            );
-            out.list(&open, &params, &format!("{close};"));
+            let types = [&cx, &request, &message(command.response), "Refusal"];
+            signature(out, command.method, types, ";");
         }
         for (name, range) in ranges {
             out.documented(&about::range(range));
@@ -115,8 +102,8 @@ fn robot(
 /// Writes a method for requests without a type, which refuses them.
 fn raw(out: &mut Source, protocol: &str, name: &str) {
     let cx = format!("context: Context<{protocol}>");
-    let (open, params, close) = signature(name, &cx, "request: RawRequest", "RawAnswer", "Refusal");
-    out.list(&open, &params, &format!("{close} {{"));
+    let types = [&cx, "request: RawRequest", "RawAnswer", "Refusal"];
+    signature(out, name, types, " {");
     out.template("raw", &[("protocol", protocol)]);
 }
 
@@ -128,15 +115,10 @@ fn example(out: &mut Source, protocol: &str, commands: &[Call<'_>]) {
             let request = format!("_: {}", message(command.request));
             let response = message(command.response);
             let name = if command.may_move() { "context" } else { "_" };
-            let (open, params, close) = signature(
-                command.method,
-                &format!("{name}: Context<{protocol}>"),
-                &request,
-                &response,
-                "Refusal",
-            );
+            let cx = format!("{name}: Context<{protocol}>");
             out.blank();
-            out.list(&open, &params, &format!("{close} {{"));
+            let types = [&cx, &request, &response, "Refusal"];
+            signature(out, command.method, types, " {");
             if command.may_move() {
                 out.template("example_method", &[]);
             }

@@ -40,15 +40,12 @@ fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
             });
         }
         Sample::Answer(call, answer) => {
-            let robot = format!("{}<{}>", runtime(context, "Context"), context.package.name);
-            let (open, params, close) = signature(
-                call.method,
-                &format!("context: {robot}"),
-                &format!("request: {}", call.request.ty.name),
-                &call.response.ty.name,
-                &runtime(context, "Refusal"),
-            );
-            out.list(&open, &params, &format!("{close} {{"));
+            let (of_runtime, protocol) = (runtime(context, "Context"), &context.package.name);
+            let cx = format!("context: {of_runtime}<{protocol}>");
+            let request = format!("request: {}", call.request.ty.name);
+            let refusal = runtime(context, "Refusal");
+            let types = [&*cx, &request, &call.response.ty.name, &refusal];
+            signature(out, call.method, types, " {");
             let answer = spelled_record(answer, Place::Outside, 0);
             out.line(indented(&format!(
                 "println!(\"{{}} asks: {{request:?}}\", context.peer);\nOk({answer})\n"
