@@ -3,6 +3,7 @@
 use super::facts::code;
 use crate::package::expr::Expr;
 use crate::package::items::{Package, Spelled};
+use crate::package::joined::Joined;
 use fc_spec::model::{Condition, Field, Scalar, Value};
 
 /// The fields that a condition tests.
@@ -37,8 +38,8 @@ impl Asked<'_, '_> {
         value: impl Fn(&Spelled<'_, Field>, &Scalar) -> String,
     ) -> Vec<(&str, String)> {
         let fields = self.fields.iter().map(|(field, values)| {
-            let values: Vec<String> = values.iter().map(|wire| value(field, wire)).collect();
-            (&*field.name, values.join(or))
+            let values = values.iter().map(|wire| value(field, wire));
+            (&*field.name, values.joined(or))
         });
         fields.collect()
     }
@@ -59,6 +60,6 @@ pub fn sentence(
         code(&spelled(&value))
     });
     let each = each.iter().map(|(name, any)| format!("`{name}` is {any}"));
-    let each: Vec<String> = each.collect();
-    Some(format!("{is} {only}{} {}.", asked.word, each.join(" and ")))
+    let each = each.joined(" and ");
+    Some(format!("{is} {only}{} {each}.", asked.word))
 }

@@ -3,6 +3,7 @@
 use super::source::Source;
 use super::style::Style;
 use crate::package::items::{Call, Item, Package, Shape, Spelled};
+use crate::package::joined::Joined;
 use crate::package::language::Language;
 use crate::product::Product;
 use crate::sample::{Profile, Samples};
@@ -82,8 +83,8 @@ impl<'m> Context<'m> {
             Lang::Zh => format!("- 文档：`{folder}/{page}`"),
             Lang::En => format!("- Docs: `{folder}/{page}`"),
         };
-        let links: Vec<String> = self.docs.iter().map(link).collect();
-        (!links.is_empty()).then(|| links.join("\n"))
+        let links = self.docs.iter().map(link).joined("\n");
+        (!links.is_empty()).then_some(links)
     }
 
     /// Returns the commands that have a code.

@@ -5,6 +5,7 @@ use super::docs::Docs;
 use super::process;
 use super::style::Style;
 use crate::package::items::Item;
+use crate::package::joined::Joined;
 use fc_spec::model::{
     Accepted, AcceptedIn, Argument, Available, Body, BodyState, Cadence, Constraint, DeclaredError,
     Deprecation, Direction, Effect, EnumValue, Example, Field, Kind, Number, Operation, Quirk,
@@ -19,11 +20,8 @@ pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>
     if let Some(deprecation) = &details.deprecated {
         withdrawn(&mut docs, deprecation);
     }
-    let facts: Vec<String> = condition
-        .into_iter()
-        .chain(field_facts(style, field))
-        .collect();
-    docs.paragraph(facts.join(" "));
+    let facts = condition.into_iter().chain(field_facts(style, field));
+    docs.paragraph(facts.joined(" "));
     docs
 }
 
@@ -143,8 +141,7 @@ fn field_facts(style: &Style, field: &Field) -> Vec<String> {
         );
     }
     if !details.also.is_empty() {
-        let keys: Vec<String> = details.also.iter().map(|key| code(key)).collect();
-        facts.push(format!("Also read from the key {}.", keys.join(", ")));
+        facts.push(format!("Also read from the key {}.", codes(&details.also)));
     }
     if field.sensitive {
         facts.push(style.redacted.to_owned());
@@ -158,16 +155,12 @@ fn field_facts(style: &Style, field: &Field) -> Vec<String> {
 
 /// Returns the sentences about audiences, hardware and releases, with the names of the spec.
 pub fn limits(available: &Available) -> String {
-    let spans = |names: &[String]| {
-        let names: Vec<String> = names.iter().map(|name| code(name)).collect();
-        names.join(", ")
-    };
     let mut limits = Vec::new();
     if !available.audiences.is_empty() {
-        limits.push(format!("Only for {}.", spans(&available.audiences)));
+        limits.push(format!("Only for {}.", codes(&available.audiences)));
     }
     if !available.hardware.is_empty() {
-        limits.push(format!("Only on {}.", spans(&available.hardware)));
+        limits.push(format!("Only on {}.", codes(&available.hardware)));
     }
     for (series, first, last) in available.releases() {
         let first = first.map(|first| format!(" from {first}"));
@@ -235,12 +228,9 @@ pub fn operation_facts(style: &Style, operation: &Operation) -> String {
         facts.extend(by("Stopped", stream.stopped_by.as_ref()));
     }
     if !operation.errors.is_empty() {
-        let codes: Vec<String> = operation
-            .errors
-            .iter()
-            .map(|error| format!("`{}`", error.code))
-            .collect();
-        facts.push(format!("May be refused with {}.", codes.join(", ")));
+        let errors = operation.errors.iter();
+        let errors = errors.map(|error| format!("`{}`", error.code));
+        facts.push(format!("May be refused with {}.", errors.joined(", ")));
     }
     if let Some(since) = &operation.since {
         facts.push(format!("Since {since}."));
@@ -256,26 +246,16 @@ fn accepted_facts(accepted: &Accepted) -> Vec<String> {
         None => {}
         Some(AcceptedIn::Any) => facts.push("Accepted in any state.".to_owned()),
         Some(AcceptedIn::States(sets)) => {
-            let sets: Vec<String> = sets
-                .iter()
-                .map(|set| {
-                    let values = set.values.iter();
-                    let values: Vec<String> = values
-                        .map(|value| format!("`{}`", Value::from(value)))
-                        .collect();
-                    format!("`{}` is {}", set.ty, values.join(" or "))
-                })
-                .collect();
-            facts.push(format!("Accepted only when {}.", sets.join(", and ")));
+            let sets = sets.iter().map(|set| {
+                let values = set.values.iter();
+                let values = values.map(|value| format!("`{}`", Value::from(value)));
+                format!("`{}` is {}", set.ty, values.joined(" or "))
+            });
+            facts.push(format!("Accepted only when {}.", sets.joined(", and ")));
         }
     }
     if !accepted.after.is_empty() {
-        let names: Vec<String> = accepted
-            .after
-            .iter()
-            .map(|name| format!("`{name}`"))
-            .collect();
-        facts.push(format!("Send first: {}.", names.join(", ")));
+        facts.push(format!("Send first: {}.", codes(&accepted.after)));
     }
     facts
 }
@@ -372,8 +352,8 @@ fn constraint(style: &Style, constraint: Constraint<'_>) -> Option<String> {
         Argument::Range(least, most) => format!("{name}: {least} to {most}."),
         Argument::Pattern(pattern) => format!("{name}: {}.", code(pattern.source())),
         Argument::Values(taken) => {
-            let taken: Vec<String> = taken.iter().map(|it| code(&scalar(style, it))).collect();
-            format!("{name} {}.", taken.join(", "))
+            let taken = taken.iter().map(|it| code(&scalar(style, it)));
+            format!("{name} {}.", taken.joined(", "))
         }
     })
 }
@@ -409,6 +389,11 @@ fn scalar(style: &Style, scalar: &Scalar) -> String {
         Scalar::Number(value) => number(style, value),
         Scalar::String(text) => format!("{text:?}"),
     }
+}
+
+/// Returns names as code spans with commas between them.
+fn codes(names: &[String]) -> String {
+    names.iter().map(|name| code(name)).joined(", ")
 }
 
 /// Returns a code span with as many backticks as the text needs.

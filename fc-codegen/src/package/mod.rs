@@ -13,6 +13,7 @@ pub mod expr;
 pub(crate) mod facts;
 pub(crate) mod group;
 pub mod items;
+pub(crate) mod joined;
 pub mod language;
 pub(crate) mod literal;
 pub(crate) mod marks;

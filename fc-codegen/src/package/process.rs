@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::docs::Docs;
 use crate::package::items::Spelled;
+use crate::package::joined::Joined;
 use fc_spec::model::{
     EnumType, EnumValue, Exchange, KeyPath, Messages, Operation, SetOff, TypeRef,
 };
@@ -137,7 +138,7 @@ pub fn ending(
             let (command, report) = (tie.command.join("."), tie.report.join("."));
             format!("`{}.{command}` = `{report}`", tie.side.name())
         });
-        let ties = ties.collect::<Vec<_>>().join(", ");
+        let ties = ties.joined(", ");
         docs.both([
             format!("只收到属于这次调用的上报：{ties}。"),
             format!("Only reports of this call arrive: {ties}."),

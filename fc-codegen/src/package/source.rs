@@ -4,6 +4,7 @@
 
 use super::docs::{Docs, columns_of};
 use super::style::{Comment, Style};
+use crate::package::joined::Joined;
 use fc_spec::model::Languages;
 
 /// A file, or a part of one.
@@ -226,14 +227,7 @@ impl Source {
 
 /// Joins items for one line.
 pub fn join<S: AsRef<str>>(items: &[S]) -> String {
-    let mut out = String::new();
-    for (index, item) in items.iter().enumerate() {
-        if index > 0 {
-            out.push_str(", ");
-        }
-        out.push_str(item.as_ref());
-    }
-    out
+    items.iter().joined(", ")
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::docs::Docs;
 use super::source::Source;
+use crate::package::joined::Joined;
 use fc_spec::model::Lang;
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -47,7 +48,7 @@ impl Source {
             let mark = ["{{", name, "}}"].concat();
             if value.is_empty() {
                 let lines = text.lines().filter(|line| line.trim() != mark);
-                text = lines.collect::<Vec<_>>().join("\n");
+                text = lines.joined("\n");
             }
             text = text.replace(&mark, value);
         }
@@ -108,7 +109,7 @@ fn docs_of(lines: &[&str]) -> Docs<'static> {
         }
         let with = |mark: &str| {
             let lines = paragraph.iter().filter_map(|it| it.strip_prefix(mark));
-            lines.collect::<Vec<_>>().join("\n")
+            lines.joined("\n")
         };
         match [ZH, EN].map(with) {
             [zh, en] if en.is_empty() => docs.raw_in(Lang::Zh, zh),

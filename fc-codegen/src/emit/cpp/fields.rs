@@ -8,6 +8,7 @@ use crate::package::conditions::Asked;
 use crate::package::context::Context;
 use crate::package::expr::Expr;
 use crate::package::items::{Item, Package, Shape, Spelled};
+use crate::package::joined::Joined;
 use crate::package::marks::FieldMarks;
 use crate::package::process::has_states;
 use crate::package::source::Source;
@@ -236,18 +237,16 @@ fn asks(
             each => format!("({})", each.join(" || ")),
         }
     });
-    let holds = holds.collect::<Vec<_>>().join(" && ");
+    let holds = holds.joined(" && ");
     let holds = match condition.word {
         "unless" => format!("!({holds})"),
         _ => holds,
     };
     let said = condition.fields.iter().map(|(other, values)| {
         let values = values.iter().map(|it| Value::from(it).to_string());
-        let values: Vec<String> = values.collect();
-        format!("`{}` is {}", other.wire, values.join(" or "))
+        format!("`{}` is {}", other.wire, values.joined(" or "))
     });
-    let said = said.collect::<Vec<_>>().join(" and ");
-    let said = literal(&format!("{} {said}", condition.word));
+    let said = literal(&format!("{} {}", condition.word, said.joined(" and ")));
     let (key, name) = (literal(&field.wire), &field.name);
     format!("asked.asks({key}, message.{name}, {holds}, {said});")
 }

@@ -3,6 +3,7 @@
 use super::types::namespace;
 use crate::package::context::Context;
 use crate::package::docs::columns_of;
+use crate::package::joined::Joined;
 use crate::package::source::{Source, join};
 use crate::package::style::{Comment, Style};
 use crate::package::template::{Templates, templates};
@@ -259,10 +260,9 @@ pub fn raw(text: &str) -> String {
         rest = behind;
     }
     pieces.push(rest);
-    let pieces = pieces
-        .iter()
-        .map(|piece| format!("R\"{mark}({piece}){mark}\""));
-    pieces.collect::<Vec<_>>().join("\n      ")
+    let pieces = pieces.iter();
+    let pieces = pieces.map(|piece| format!("R\"{mark}({piece}){mark}\""));
+    pieces.joined("\n      ")
 }
 
 /// Returns an integer literal of any width.

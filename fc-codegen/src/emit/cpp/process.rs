@@ -4,10 +4,11 @@ use super::fields::enumerators;
 use super::types::namespace;
 use crate::package::context::{Context, Step};
 use crate::package::items::{Call, Item, Shape, Spelled};
+use crate::package::joined::Joined;
 use crate::package::process::{has_states, next_values, set_off, state};
 use crate::package::source::Source;
 use fc_spec::model::{
-    Direction, EnumRepr, EnumType, EnumValue, Exchange, Kind, Operation, StateOrder, StructRef,
+    EnumRepr, EnumType, EnumValue, Exchange, Kind, Operation, StateOrder, StructRef,
 };
 
 /// Declares the functions over the states of an enum.
@@ -70,8 +71,7 @@ pub fn define(
             }
             for value in values.iter().filter(|value| !value.then.is_empty()) {
                 let then = next_values(value, values);
-                let then: Vec<String> = then.map(|known| is("value", known)).collect();
-                let then = then.join(" || ");
+                let then = then.map(|known| is("value", known)).joined(" || ");
                 out.line(format!("if ({}) return {then};", is("previous", value)));
             }
             out.line("return false;");
@@ -181,29 +181,18 @@ pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     for (set_off, _, report) in set_off(context, call.operation) {
         let (request, response) = (&call.request.ty.name, &call.response.ty.name);
         let name = context.name_of(&report.request.ty);
-        let ties: Vec<String> = set_off
-            .tied
-            .iter()
-            .map(|tie| {
-                let holder = match tie.side {
-                    Direction::Request => "request",
-                    Direction::Response => "response",
-                };
-                let messages = call.operation.messages();
-                let ours =
-                    messages.map(|it| at(context, holder, &it.body(tie.side).ty, &tie.command));
-                let theirs = at(context, "report", &report.request.ty, &tie.report);
-                format!(
-                    "detail::may_be_same({}, {theirs})",
-                    ours.unwrap_or_default()
-                )
-            })
-            .collect();
-        let all = if ties.is_empty() {
-            "true".to_owned()
-        } else {
-            ties.join(" && ")
-        };
+        let ties = set_off.tied.iter().map(|tie| {
+            let side = tie.side.name();
+            let messages = call.operation.messages();
+            let ours = messages.map(|it| at(context, side, &it.body(tie.side).ty, &tie.command));
+            let ours = ours.unwrap_or_default();
+            let theirs = at(context, "report", &report.request.ty, &tie.report);
+            format!("detail::may_be_same({ours}, {theirs})")
+        });
+        let mut all = ties.joined(" && ");
+        if all.is_empty() {
+            all.push_str("true");
+        }
         let [request, response, name] =
             [request, response, name].map(|it| [space, "::", it].concat());
         let values = [

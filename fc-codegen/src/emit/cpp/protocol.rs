@@ -7,6 +7,7 @@ use crate::package::about;
 use crate::package::context::{Context, page_of};
 use crate::package::facts;
 use crate::package::items::Spelled;
+use crate::package::joined::Joined;
 use crate::package::language::Case;
 use crate::package::source::Source;
 use crate::package::wire::{FrameFacts, WireFacts};
@@ -146,8 +147,7 @@ fn frames(out: &mut Source, wire: &WireFacts<'_, '_>) {
     for (name, kind) in frame.kinds {
         out.line(format!("protocol.{name}_kind = {kind};"));
     }
-    let reserved = frame.reserved_kinds.iter().map(u8::to_string);
-    let reserved = reserved.collect::<Vec<_>>().join(", ");
+    let reserved = frame.reserved_kinds.iter().map(u8::to_string).joined(", ");
     out.line(format!("protocol.reserved_kinds = {{{reserved}}};"));
     out.line(format!("protocol.plain_encoding = {};", frame.plain));
     if let Some(gzip) = frame.gzip {
@@ -260,20 +260,14 @@ fn preconditions(context: &Context<'_>, command: &Operation) -> Option<String> {
     let states = context.accepted_states(command);
     let states = states.iter().map(|states| {
         let values = states.values.iter();
-        let values: Vec<String> = values.map(|value| literal(&value.name)).collect();
-        format!(
-            "{{{}, {{{}}}}}",
-            literal(&states.item.ty.of.name),
-            values.join(", ")
-        )
+        let values = values.map(|value| literal(&value.name)).joined(", ");
+        format!("{{{}, {{{values}}}}}", literal(&states.item.ty.of.name))
     });
-    let states: Vec<String> = states.collect();
+    let states = states.joined(", ");
     let is_any = matches!(accepted.states, Some(AcceptedIn::Any));
-    let after: Vec<String> = accepted.after.iter().map(|name| literal(name)).collect();
+    let after = accepted.after.iter().map(|name| literal(name)).joined(", ");
     Some(format!(
-        "fc_runtime::Preconditions{{{is_any}, {{{}}}, {{{}}}}}",
-        states.join(", "),
-        after.join(", ")
+        "fc_runtime::Preconditions{{{is_any}, {{{states}}}, {{{after}}}}}"
     ))
 }
 

@@ -6,6 +6,7 @@ use super::types::field_type_in;
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::expr::{Expr, Record};
+use crate::package::joined::Joined;
 
 /// Generates `tables.hpp`.
 pub fn header(context: &Context<'_>) -> String {
@@ -59,8 +60,8 @@ fn record(context: &Context<'_>, space: &str, of: &Record<'_>) -> String {
         Some(value) => spelled_in(context, space, value, &field_type_in(context, space, field)),
         None => "std::nullopt".to_owned(),
     });
-    let members: Vec<String> = members.chain(["{}".to_owned()]).collect();
-    format!("{space}{}{{{}}}", of.item.ty.name, members.join(", "))
+    let members = members.chain(["{}".to_owned()]).joined(", ");
+    format!("{space}{}{{{members}}}", of.item.ty.name)
 }
 
 /// Returns a constant of the C++ type `ty`, with `space` before each name of the package, such as `fc::`.
@@ -85,8 +86,7 @@ pub fn spelled_in(context: &Context<'_>, space: &str, expr: &Expr<'_>, ty: &str)
         Expr::List(items) => {
             let inner = item_of(ty);
             let items = items.iter().map(|it| spelled_in(context, space, it, inner));
-            let items: Vec<String> = items.collect();
-            format!("{ty}{{{}}}", items.join(", "))
+            format!("{ty}{{{}}}", items.joined(", "))
         }
         Expr::Record(of) | Expr::Choice(_, _, of) => record(context, space, of),
         Expr::Value(item, value) => format!("{space}{}::{}", enumerators(item), value.name),

@@ -3,6 +3,7 @@
 use super::text::{integer, literal};
 use crate::package::expr::{Expr, Record};
 use crate::package::items::Spelled;
+use crate::package::joined::Joined;
 use crate::package::source::Source;
 use fc_spec::model::{Field, FloatKind, IntKind, Type};
 
@@ -38,8 +39,8 @@ fn flat(value: &Expr<'_>, ty: &Type, form: Form) -> String {
                 Type::Array(item) => item,
                 other => other,
             };
-            let items: Vec<String> = items.iter().map(|it| flat(it, item, form)).collect();
-            format!("listOf({})", items.join(", "))
+            let items = items.iter().map(|it| flat(it, item, form)).joined(", ");
+            format!("listOf({items})")
         }
         Expr::Record(made) | Expr::Choice(_, _, made) => record(made, form),
         Expr::Value(item, value) => format!("{}.{}", item.ty.name, value.name),

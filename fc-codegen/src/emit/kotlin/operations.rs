@@ -7,6 +7,7 @@ use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::group::Group;
 use crate::package::items::Call;
+use crate::package::joined::Joined;
 use crate::package::process::{has_states, state};
 use crate::package::source::Source;
 use fc_spec::model::{AcceptedIn, Cadence, Exchange, Kind, Operation, StructRef};
@@ -112,15 +113,13 @@ fn command_value(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         effect.name().to_uppercase()
     )];
     made.push(titled(operation));
-    let errors = context.package.errors(operation);
-    let errors: Vec<String> = errors
-        .map(|(error, result)| {
-            let (name, text) = (literal(&result.of.name), literal(&result.text.zh));
-            format!("DeclaredError({name}, {}, {text})", error.code)
-        })
-        .collect();
+    let errors = context.package.errors(operation).map(|(error, result)| {
+        let (name, text) = (literal(&result.of.name), literal(&result.text.zh));
+        format!("DeclaredError({name}, {}, {text})", error.code)
+    });
+    let errors = errors.joined(", ");
     if !errors.is_empty() {
-        made.push(format!("    .declares({})", errors.join(", ")));
+        made.push(format!("    .declares({errors})"));
     }
     made.extend(preconditions(context, operation));
     out.enclose(&head, "", |out| made.iter().for_each(|line| out.line(line)));
@@ -155,8 +154,8 @@ fn preconditions(context: &Context<'_>, operation: &Operation) -> Vec<String> {
         calls.push("    .acceptedAlways()".to_owned());
     }
     if !accepted.after.is_empty() {
-        let after: Vec<String> = accepted.after.iter().map(|name| literal(name)).collect();
-        calls.push(format!("    .after({})", after.join(", ")));
+        let after = accepted.after.iter().map(|name| literal(name)).joined(", ");
+        calls.push(format!("    .after({after})"));
     }
     calls
 }
@@ -207,14 +206,10 @@ fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
         }
     }
     if !failing.is_empty() {
-        let failing: Vec<String> = failing
-            .iter()
-            .map(|it| format!("({it} as State?)?.isError == true"))
-            .collect();
-        made.push(format!(
-            "    .failure {{ report -> {} }}",
-            failing.join(" || ")
-        ));
+        let failing = failing.iter();
+        let failing = failing.map(|it| format!("({it} as State?)?.isError == true"));
+        let failing = failing.joined(" || ");
+        made.push(format!("    .failure {{ report -> {failing} }}"));
     }
     out.enclose(&head, "", |out| made.iter().for_each(|line| out.line(line)));
 }

@@ -8,6 +8,7 @@ use crate::package::context::Context;
 use crate::package::docs::Docs;
 use crate::package::group::Group;
 use crate::package::items::Spelled;
+use crate::package::joined::Joined;
 use crate::package::language::Case;
 use crate::package::source::Source;
 use crate::package::wire::WireFacts;
@@ -65,8 +66,7 @@ fn protocol(out: &mut Source, context: &Context<'_>, groups: &[Group<'_, '_>]) {
             let ty = Case::Pascal.apply(envelope).into_owned();
             value(envelope, "MessageType<*>", ty);
         }
-        let reserved = frame.reserved_kinds.iter().map(u8::to_string);
-        let reserved = reserved.collect::<Vec<_>>().join(", ");
+        let reserved = frame.reserved_kinds.iter().map(u8::to_string).joined(", ");
         out.line(format!(
             "override val reservedKinds: Set<Int> = setOf({reserved})"
         ));

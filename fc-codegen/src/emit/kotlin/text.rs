@@ -3,6 +3,7 @@
 use crate::package::context::Context;
 use crate::package::digits::grouped;
 use crate::package::docs::escape_links;
+use crate::package::joined::Joined;
 use crate::package::language::Case;
 use crate::package::literal::quoted;
 use crate::package::marks::FieldMarks;
@@ -176,7 +177,7 @@ fn demand((name, argument): &(&str, Argument<'_>)) -> String {
     let value = match argument {
         Argument::Number(value) => number(value),
         Argument::Pattern(pattern) => literal(pattern.portable()),
-        Argument::Values(taken) => taken.iter().map(scalar).collect::<Vec<_>>().join(", "),
+        Argument::Values(taken) => taken.iter().map(scalar).joined(", "),
         Argument::Range(least, most) => match u32::try_from(*most) {
             Ok(most) if most < i32::MAX as u32 => format!("{least}, {most}"),
             _ => least.to_string(),

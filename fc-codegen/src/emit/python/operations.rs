@@ -6,6 +6,7 @@ use super::protocol;
 use super::source::{Code, Python, tuple};
 use crate::package::context::{Context, page_of};
 use crate::package::docs::Docs;
+use crate::package::joined::Joined;
 use crate::package::language::Case;
 use crate::package::name::free;
 use crate::package::process::{set_off, state};
@@ -219,9 +220,8 @@ fn sets_off(context: &Context<'_>, command: &Operation) -> Vec<Code> {
 
 /// Returns the path to a field, as the names of its fields.
 fn way(context: &Context<'_>, body: &StructRef, keys: &[String]) -> Code {
-    let steps = context.steps(body, keys);
-    let names: Vec<&str> = steps.iter().map(|step| step.name).collect();
-    literal(&names.join(".")).into()
+    let steps = context.steps(body, keys).into_iter();
+    literal(&steps.map(|step| step.name).joined(".")).into()
 }
 
 fn cadence(cadence: &Cadence) -> Code {

@@ -5,6 +5,7 @@ use super::messages::constant;
 use crate::package::conditions::Asked;
 use crate::package::expr::Expr;
 use crate::package::items::Package;
+use crate::package::joined::Joined;
 use fc_spec::model::{Type, Value};
 
 /// Returns the attribute of a conditional field: `when(mode = 2 | 3)`.
@@ -14,8 +15,7 @@ pub fn attribute(package: &Package<'_>, condition: &Asked<'_, '_>) -> String {
         ty => constant(&package.value(ty, &Value::from(wire))),
     });
     let asked = asked.iter().map(|(name, any)| format!("{name} = {any}"));
-    let asked: Vec<String> = asked.collect();
-    format!("{}({})", condition.word, asked.join(", "))
+    format!("{}({})", condition.word, asked.joined(", "))
 }
 
 /// Returns a value as comments write it.

@@ -6,6 +6,7 @@ use super::source::Source;
 use crate::package::about;
 use crate::package::facts;
 use crate::package::items::{Item, Spelled};
+use crate::package::joined::Joined;
 use crate::package::name::free;
 use crate::package::process::next_values;
 use fc_spec::model::{EnumRepr, EnumType, EnumValue, Scalar};
@@ -66,10 +67,11 @@ fn value_attributes(
     values: &[Spelled<'_, EnumValue>],
 ) -> Vec<String> {
     let mut items = vec![format!("value = {}", enum_wire(&value.wire))];
-    let then = next_values(value, values);
-    let then: Vec<&str> = then.map(|next| &*next.name).collect();
+    let then = next_values(value, values)
+        .map(|next| &next.name)
+        .joined(", ");
     if !then.is_empty() {
-        items.push(format!("then({})", then.join(", ")));
+        items.push(format!("then({then})"));
     }
     items.extend(value.is_final.then(|| "final".to_owned()));
     items.extend(value.is_error.then(|| "error".to_owned()));

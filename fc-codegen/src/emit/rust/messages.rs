@@ -14,6 +14,7 @@ use crate::package::docs::Docs;
 use crate::package::expr::Expr;
 use crate::package::facts;
 use crate::package::items::{Call, Item, Module, Shape, Spelled};
+use crate::package::joined::Joined;
 use crate::package::marks::FieldMarks;
 use fc_spec::model::{Argument, Exchange, Field, Kind, Operation, Type, TypeRef, Value, Variant};
 use std::collections::BTreeSet;
@@ -244,10 +245,8 @@ fn accepted_in<'m>(
         }
         sets => {
             let sets = sets.iter();
-            let sets: Vec<String> = sets
-                .map(|(ty, names)| format!("{ty}({})", names.join(", ")))
-                .collect();
-            out.attribute("#[fc(accepted_in(", &sets, "))]");
+            let sets = sets.map(|(ty, names)| format!("{ty}({})", names.join(", ")));
+            out.attribute("#[fc(accepted_in(", &sets.collect::<Vec<_>>(), "))]");
         }
     }
 }
@@ -265,18 +264,15 @@ fn field_attributes(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> V
         Argument::Range(least, most) if least == most => format!("{name} = {least}"),
         Argument::Range(least, most) => format!("{name} = {least}..={most}"),
         Argument::Pattern(pattern) => format!("{name} = {}", literal(pattern.portable())),
-        Argument::Values(taken) => {
-            let taken: Vec<String> = taken.iter().map(enum_wire).collect();
-            format!("{name}({})", taken.join(", "))
-        }
+        Argument::Values(taken) => format!("{name}({})", taken.iter().map(enum_wire).joined(", ")),
     }));
     items.extend(marks.quirks.iter().map(|quirk| {
         let lenient = quirk.strip_prefix("lenient_");
         lenient.map_or_else(|| (*quirk).to_owned(), |of| format!("lenient({of})"))
     }));
     if !marks.also.is_empty() {
-        let keys: Vec<String> = marks.also.iter().map(|key| literal(key)).collect();
-        items.push(format!("also({})", keys.join(", ")));
+        let keys = marks.also.iter().map(|key| literal(key)).joined(", ");
+        items.push(format!("also({keys})"));
     }
     if field.sensitive {
         items.push("sensitive".to_owned());

@@ -24,6 +24,7 @@ mod source;
 mod streams;
 mod tables;
 
+use crate::package::joined::Joined;
 use crate::package::language::RUST;
 use crate::product::{Artifact, Product};
 use crate::target::Targets;
@@ -82,8 +83,9 @@ pub fn items(model: &Model, targets: &Targets, names: &[&str]) -> String {
     let context = context(model, targets);
     let items = context.package.items();
     let items = items.filter(|item| names.contains(&item.ty.of.name.as_str()));
-    let items: Vec<_> = items.map(|item| messages::item(&context, item)).collect();
-    items.join("\n")
+    items
+        .map(|item| messages::item(&context, item))
+        .joined("\n")
 }
 
 /// Returns a field as its struct declares it: `pub name: Option<String>`.

@@ -1,6 +1,7 @@
 //! Derive attributes for processes: the reports that a command sets off, and the state of a report.
 
 use super::context::Context;
+use crate::package::joined::Joined;
 use crate::package::process::{set_off, state};
 use fc_spec::model::{Exchange, Operation, StructRef, TypeRef};
 
@@ -15,22 +16,20 @@ pub fn types<'m>(context: &'m Context<'_>, operation: &'m Operation) -> Vec<&'m 
 /// Returns `sets_off(…)` of a command.
 pub fn sets_off(context: &Context<'_>, command: &Operation) -> Option<String> {
     let messages = command.messages()?;
-    let reports: Vec<String> = set_off(context, command)
-        .map(|(set_off, _, report)| {
-            let ties = set_off.tied.iter().map(|tie| {
-                let ours = steps(context, &messages.body(tie.side).ty, &tie.command);
-                let theirs = steps(context, &report.request.ty, &tie.report);
-                format!("{}.{ours} = {theirs}", tie.side.name())
-            });
-            let ties: Vec<String> = ties.collect();
-            let name = context.name_of(&report.request.ty);
-            match ties.as_slice() {
-                [] => name.to_owned(),
-                ties => format!("{name}({})", ties.join(", ")),
-            }
-        })
-        .collect();
-    (!reports.is_empty()).then(|| format!("sets_off({})", reports.join(", ")))
+    let reports = set_off(context, command).map(|(set_off, _, report)| {
+        let ties = set_off.tied.iter().map(|tie| {
+            let ours = steps(context, &messages.body(tie.side).ty, &tie.command);
+            let theirs = steps(context, &report.request.ty, &tie.report);
+            format!("{}.{ours} = {theirs}", tie.side.name())
+        });
+        let (name, ties) = (context.name_of(&report.request.ty), ties.joined(", "));
+        match ties.as_str() {
+            "" => name.to_owned(),
+            ties => format!("{name}({ties})"),
+        }
+    });
+    let reports = reports.joined(", ");
+    (!reports.is_empty()).then(|| format!("sets_off({reports})"))
 }
 
 /// Returns `state(…)` and `failure(…)` of a report.
@@ -47,8 +46,7 @@ pub fn stage(context: &Context<'_>, report: &Operation) -> Vec<String> {
     }));
     if !failures.is_empty() {
         let failures = failures.iter().map(|keys| steps(context, body, keys));
-        let failures: Vec<String> = failures.collect();
-        items.push(format!("failure({})", failures.join(", ")));
+        items.push(format!("failure({})", failures.joined(", ")));
     }
     items
 }
@@ -59,6 +57,5 @@ fn steps(context: &Context<'_>, body: &StructRef, keys: &[String]) -> String {
         let optional = if step.optional { "?" } else { "" };
         [step.name, optional].concat()
     });
-    let steps: Vec<String> = steps.collect();
-    steps.join(".")
+    steps.joined(".")
 }

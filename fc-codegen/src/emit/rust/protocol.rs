@@ -9,6 +9,7 @@ use crate::package::digits::grouped;
 use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::Spelled;
+use crate::package::joined::Joined;
 use crate::package::language::Case;
 use crate::package::wire::WireFacts;
 use fc_spec::model::{
@@ -288,6 +289,6 @@ fn streams(out: &mut Source, context: &Context<'_>) {
 
 /// Returns bytes as a slice: `&[0xFC, 0xAA]`.
 fn bytes(bytes: &[u8]) -> String {
-    let items: Vec<String> = bytes.iter().map(|byte| format!("0x{byte:02X}")).collect();
-    format!("&[{}]", items.join(", "))
+    let items = bytes.iter().map(|byte| format!("0x{byte:02X}"));
+    format!("&[{}]", items.joined(", "))
 }

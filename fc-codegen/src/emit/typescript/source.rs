@@ -2,6 +2,7 @@
 
 use super::context::Context;
 use crate::package::docs::{Docs, escape_links};
+use crate::package::joined::Joined;
 use crate::package::literal::quoted;
 use crate::package::source::join;
 use crate::package::style::{Comment, Style};
@@ -68,8 +69,7 @@ fn in_comment(line: &str) -> Cow<'_, str> {
 
 /// Returns the text of a block tag on one line.
 pub fn tag_text(text: &str) -> String {
-    let lines = text.lines().map(|line| prose(line.trim()));
-    lines.collect::<Vec<_>>().join(" ")
+    text.lines().map(|line| prose(line.trim())).joined(" ")
 }
 
 /// Returns a string literal in the quotes that need fewer escapes.

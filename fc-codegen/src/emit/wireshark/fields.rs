@@ -2,6 +2,7 @@
 
 use super::in_languages;
 use super::lua::{Table, quoted};
+use crate::package::joined::Joined;
 use fc_spec::model::{
     EnumRepr, EnumType, EnvelopeRole, IntKind, Languages, Model, Number, Scalar, StructType, Text,
     Type, TypeShape,
@@ -50,12 +51,10 @@ pub(super) fn table(model: &Model, languages: Languages) -> Table {
         let (path, ty, text) = (quoted(path), filter.ty, quoted(&filter.text));
         let values = filter.values.iter();
         let values = values.map(|(value, name)| format!("[{}] = {}", quoted(value), quoted(name)));
-        let values: Vec<_> = values.collect();
-        let values = if values.is_empty() {
-            String::new()
-        } else {
-            format!(", {{ {} }}", values.join(", "))
-        };
+        let mut values = values.joined(", ");
+        if !values.is_empty() {
+            values = format!(", {{ {values} }}");
+        }
         table.push(format_args!("{{ {path}, \"{ty}\", {text}{values} }}"));
     }
     table

@@ -5,6 +5,7 @@
 mod fields;
 mod lua;
 
+use crate::package::joined::Joined;
 use crate::product::{Artifact, Product};
 use crate::target::Targets;
 use fc_spec::model::{
@@ -38,11 +39,8 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
 fn in_languages(text: &Text, languages: Languages) -> String {
     let included = |lang: &Lang| languages.include(*lang);
     let texts = [Lang::En, Lang::Zh].into_iter().filter(included);
-    let texts: Vec<&str> = texts
-        .map(|lang| lang.text(text))
-        .filter(|text| !text.is_empty())
-        .collect();
-    texts.join(" · ")
+    let texts = texts.map(|lang| lang.text(text));
+    texts.filter(|text| !text.is_empty()).joined(" · ")
 }
 
 /// Returns the facts of a model as a Lua table.
@@ -130,8 +128,7 @@ fn header_field(field: &HeaderField, text: &str) -> String {
 }
 
 fn wire_keys(fields: &[EnvelopeField]) -> String {
-    let keys = fields
-        .iter()
-        .map(|field| format!("[{}] = true", quoted(&field.wire)));
-    format!("{{ {} }}", keys.collect::<Vec<_>>().join(", "))
+    let keys = fields.iter();
+    let keys = keys.map(|field| format!("[{}] = true", quoted(&field.wire)));
+    format!("{{ {} }}", keys.joined(", "))
 }
