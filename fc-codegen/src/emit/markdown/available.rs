@@ -1,7 +1,7 @@
 //! The limits of an item to audiences, machines and releases, as a page shows them.
 
-use fc_spec::model::Lang;
-use fc_spec::model::{Available, Declared, Model};
+use super::desk::Desk;
+use fc_spec::model::{Available, Declared};
 use serde::Serialize;
 
 /// The limits as sentences or badges.
@@ -17,11 +17,12 @@ pub(super) struct AvailableView {
     releases: Vec<String>,
 }
 
-impl AvailableView {
+impl Desk<'_, '_> {
     /// Returns `None` for an item without limits.
-    pub(super) fn of(model: &Model, available: Option<&Available>, lang: Lang) -> Option<Self> {
+    pub(super) fn available(&self, available: Option<&Available>) -> Option<AvailableView> {
         let available = available?;
-        let words = &model.availability;
+        let lang = self.lang;
+        let words = &self.book.model.availability;
         let title = |name: &String, declared: Option<&Declared>| {
             declared.map_or_else(|| name.clone(), |it| lang.text(&it.title).to_owned())
         };
@@ -51,7 +52,7 @@ impl AvailableView {
                 }
             }
         });
-        Some(Self {
+        Some(AvailableView {
             names: available.audiences.join(" "),
             audiences: joined(audiences.collect()),
             hardware: joined(hardware.collect()),

@@ -1,6 +1,7 @@
 //! Conditions of fields: the values of other fields that decide whether a field is present.
 
-use super::rows::{Place, Rows, scalar};
+use super::desk::Desk;
+use super::rows::{Place, scalar};
 use fc_spec::model::{Asked, Condition, Field, Scalar, StructType, TypeShape};
 use serde::Serialize;
 
@@ -35,7 +36,7 @@ struct KnownValue {
     href: String,
 }
 
-impl<'m> Rows<'_, 'm> {
+impl<'m> Desk<'_, 'm> {
     /// Returns the condition of a field of the struct that is listed at `place`.
     pub(super) fn condition(
         &self,
@@ -60,9 +61,7 @@ impl<'m> Rows<'_, 'm> {
         };
         AskedView {
             key: asked.wire.clone(),
-            href: self
-                .page
-                .link((self.page, place.field(&asked.wire).anchor())),
+            href: self.link(self.page, place.field(&asked.wire).anchor()),
             any: asked.values.iter().map(value).collect(),
         }
     }

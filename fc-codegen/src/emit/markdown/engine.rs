@@ -9,7 +9,7 @@ use super::bytes::FrameView;
 use super::enums::EnumView;
 use super::escape::{self, Place};
 use super::links::Link;
-use super::places::{Given, Kept};
+use super::places::{Kept, Reference};
 use super::rows::DeprecationNote;
 use super::terms::marked;
 use fc_spec::model::Lang;
@@ -34,9 +34,9 @@ shown!(
     DeprecationNote,
     EnumView,
     FrameView,
-    Given,
     Kept,
-    Link
+    Link,
+    Reference
 );
 
 macro_rules! templates {

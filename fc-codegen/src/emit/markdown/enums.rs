@@ -1,7 +1,8 @@
 //! Views of enums.
 
 use super::available::AvailableView;
-use super::rows::{Rows, scalar};
+use super::desk::Desk;
+use super::rows::scalar;
 use super::states::StateDiagram;
 use fc_spec::model::{EnumType, Operation, StateOrder, TypeDef, TypeShape};
 use serde::Serialize;
@@ -31,7 +32,7 @@ pub(super) struct EnumValueView {
     available: Option<AvailableView>,
 }
 
-impl<'m> Rows<'_, 'm> {
+impl<'m> Desk<'_, 'm> {
     /// Returns the enums in the bodies of an operation, each once.
     pub(super) fn enums(&self, operation: &Operation) -> Vec<EnumView> {
         let types = self.book.types_of(operation).into_iter();

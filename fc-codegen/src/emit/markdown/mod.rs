@@ -11,6 +11,7 @@ mod book;
 mod bytes;
 mod commented;
 mod conditions;
+mod desk;
 mod engine;
 mod enums;
 mod escape;
@@ -33,9 +34,9 @@ pub(crate) use words::{Word, confirmed, purpose};
 
 use crate::product::{Artifact, Product};
 use crate::target::Targets;
+use desk::Desk;
 use engine::{Engine, tidy};
 use fc_spec::model::Model;
-use pages::Desk;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 /// Returns every page, Chinese first, and the contents of the site's sidebar.

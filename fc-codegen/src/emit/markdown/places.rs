@@ -1,7 +1,7 @@
 //! Coordinate systems and stores of types, fields and operations.
 
+use super::desk::Desk;
 use super::links::{Anchor, Link, Page};
-use super::rows::Rows;
 use serde::Serialize;
 
 /// The store of a value.
@@ -21,48 +21,40 @@ impl Kept {
     }
 }
 
-/// The coordinate system of a value.
+/// The entity or the coordinate system of a value.
 #[derive(Debug, Serialize)]
-pub(super) struct Given {
+pub(super) struct Reference {
     #[serde(skip)]
-    system: String,
-    link: Link,
+    pub(super) name: String,
+    pub(super) link: Link,
 }
 
-impl Given {
-    /// Returns the name of the coordinate system.
-    pub(super) fn system(&self) -> &str {
-        &self.system
+impl Reference {
+    /// Returns the name in the spec.
+    pub(super) fn name(&self) -> &str {
+        &self.name
     }
 }
 
-impl Rows<'_, '_> {
+impl Desk<'_, '_> {
     /// Returns the view of a store, by its name.
     pub(super) fn kept(&self, name: &str) -> Kept {
         let store = self.book.model.store(name);
         let title = store.map_or(name, |store| self.lang.text(&store.title));
         Kept {
             store: name.to_owned(),
-            link: Link {
-                text: title.to_owned(),
-                href: self.page.link((Page::Places, Anchor::of("store", name))),
-            },
+            link: self.to(title, (Page::Places, Anchor::of("store", name))),
             survives_restart: store.and_then(|store| store.survives_restart),
         }
     }
 
     /// Returns the view of a coordinate system, by its name.
-    pub(super) fn given(&self, name: &str) -> Given {
+    pub(super) fn given(&self, name: &str) -> Reference {
         let system = self.book.model.coordinate_system(name);
         let title = system.map_or(name, |system| self.lang.text(&system.title));
-        Given {
-            system: name.to_owned(),
-            link: Link {
-                text: title.to_owned(),
-                href: self
-                    .page
-                    .link((Page::Places, Anchor::of("coordinates", name))),
-            },
+        Reference {
+            name: name.to_owned(),
+            link: self.to(title, (Page::Places, Anchor::of("coordinates", name))),
         }
     }
 }

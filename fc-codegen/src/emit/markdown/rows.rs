@@ -1,16 +1,14 @@
 //! Bodies as rows of a table. Every field has its own row, named by its path.
 
 use super::available::AvailableView;
-use super::book::Book;
 use super::conditions::ConditionView;
+use super::desk::Desk;
 use super::links::{Anchor, Link, Page};
-use super::mentions::linked;
-use super::places::{Given, Kept};
+use super::places::{Kept, Reference};
 use super::words::{self, Word as _};
-use fc_spec::model::Lang;
 use fc_spec::model::{
-    Available, Deprecation, Direction, EnvelopeField, Example, Field, OneOf, Scalar, StructType,
-    Text, Type, TypeDef, TypeRef, TypeShape, Value,
+    Deprecation, Direction, EnvelopeField, Example, Field, OneOf, Scalar, StructType, Type,
+    TypeDef, TypeRef, TypeShape, Value,
 };
 use serde::Serialize;
 use std::collections::HashSet;
@@ -62,15 +60,8 @@ struct More {
     available: Option<AvailableView>,
     /// The entity that its value identifies.
     refers: Option<Reference>,
-    given: Option<Given>,
+    given: Option<Reference>,
     kept: Option<Kept>,
-}
-
-/// The entity that a field refers to.
-#[derive(Debug, Serialize)]
-struct Reference {
-    entity: String,
-    link: Link,
 }
 
 #[derive(Debug, Serialize)]
@@ -99,16 +90,9 @@ pub(super) struct DeprecationNote {
     replaced_by: Option<Link>,
 }
 
-/// Builds the rows of a page.
-pub(super) struct Rows<'b, 'm> {
-    pub(super) book: &'b Book<'m>,
-    pub(super) lang: Lang,
-    pub(super) page: Page<'m>,
-}
-
-impl<'m> Rows<'_, 'm> {
+impl<'m> Desk<'_, 'm> {
     /// Returns the keys of the envelope.
-    pub(super) fn envelope(&self, direction: Direction) -> Vec<Row> {
+    pub(super) fn envelope_rows(&self, direction: Direction) -> Vec<Row> {
         let body = Place::top(Anchor::named(direction.name()));
         let envelope = self.book.samples.envelope(direction).iter();
         envelope
@@ -117,9 +101,9 @@ impl<'m> Rows<'_, 'm> {
     }
 
     /// Returns the keys of the envelope, then the fields of a struct and of all objects in it.
-    pub(super) fn message(&self, direction: Direction, ty: &TypeRef) -> Vec<Row> {
+    pub(super) fn message_rows(&self, direction: Direction, ty: &TypeRef) -> Vec<Row> {
         let body = Place::top(Anchor::named(direction.name()));
-        let mut rows = self.envelope(direction);
+        let mut rows = self.envelope_rows(direction);
         let ty = self.book.model.types.get(ty);
         self.shape(ty, &body, &mut Vec::new(), &mut rows);
         rows
@@ -127,7 +111,7 @@ impl<'m> Rows<'_, 'm> {
 
     /// Returns the fields of a struct or of each variant of a one-of, and of all objects in it. Their anchors start
     /// with `anchor`.
-    pub(super) fn of_type(&self, ty: &'m TypeDef, anchor: Anchor) -> Vec<Row> {
+    pub(super) fn type_rows(&self, ty: &'m TypeDef, anchor: Anchor) -> Vec<Row> {
         let mut rows = Vec::new();
         self.shape(ty, &Place::top(anchor), &mut Vec::new(), &mut rows);
         rows
@@ -138,10 +122,7 @@ impl<'m> Rows<'_, 'm> {
         let replaced_by = deprecated.replaced_by.as_deref().map(|name| {
             let operation = self.book.operation(name);
             let page = operation.map_or(Page::Index, Page::Operation);
-            Link {
-                text: format!("`{name}`"),
-                href: self.page.link((page, Anchor::none())),
-            }
+            self.to(format!("`{name}`"), (page, Anchor::none()))
         });
         DeprecationNote {
             since: deprecated.since.clone(),
@@ -259,7 +240,7 @@ impl<'m> Rows<'_, 'm> {
             code_name,
             conflicts,
             since: details.since.clone(),
-            // [`Rows::condition`] fills this in, because it needs the other fields of the struct.
+            // [`Desk::condition`] fills this in, because it needs the other fields of the struct.
             condition: None,
             available: self.available(details.available.as_ref()),
             refers: details.refers.as_deref().map(|name| self.reference(name)),
@@ -282,29 +263,18 @@ impl<'m> Rows<'_, 'm> {
         }
     }
 
-    pub(super) fn available(&self, available: Option<&Available>) -> Option<AvailableView> {
-        AvailableView::of(self.book.model, available, self.lang)
-    }
-
     fn reference(&self, name: &str) -> Reference {
         let entity = self.book.model.entity(name);
         let title = entity.map_or(name, |entity| self.lang.text(&entity.title));
         Reference {
-            entity: name.to_owned(),
-            link: Link {
-                text: title.to_owned(),
-                href: self.page.link((Page::Entities, Anchor::of("entity", name))),
-            },
+            name: name.to_owned(),
+            link: self.to(title, (Page::Entities, Anchor::of("entity", name))),
         }
     }
 
     /// Returns a link to a conflict on the page of open questions.
     pub(super) fn conflict(&self, id: &str) -> Link {
-        let place = (Page::OpenQuestions, Anchor::named(id));
-        Link {
-            text: id.to_owned(),
-            href: self.page.link(place),
-        }
+        self.to(id, (Page::OpenQuestions, Anchor::named(id)))
     }
 
     fn type_cell(&self, ty: &Type) -> TypeCell {
@@ -324,11 +294,6 @@ impl<'m> Rows<'_, 'm> {
             href: shared.map(|ty| self.page.link(self.book.place_of_type(ty))),
             sent: None,
         }
-    }
-
-    /// Returns a sentence of the spec with links to the operations that it names.
-    fn sentence(&self, text: &Text) -> String {
-        linked(self.book, self.page, self.lang.text(text))
     }
 
     fn length(&self, field: &Field) -> Option<Length> {
@@ -360,13 +325,12 @@ impl Row {
 
     /// Returns the name of the entity that the field refers to.
     pub(super) fn entity(&self) -> Option<&str> {
-        let refers = self.more.as_ref()?.refers.as_ref();
-        refers.map(|refers| refers.entity.as_str())
+        self.more.as_ref()?.refers.as_ref().map(Reference::name)
     }
 
     /// Returns the name of the coordinate system of the field.
     pub(super) fn system(&self) -> Option<&str> {
-        self.more.as_ref()?.given.as_ref().map(Given::system)
+        self.more.as_ref()?.given.as_ref().map(Reference::name)
     }
 
     /// Returns the name of the store of the field.

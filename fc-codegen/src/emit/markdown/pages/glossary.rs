@@ -42,10 +42,8 @@ fn uses<'m>(desk: Desk<'_, 'm>) -> HashMap<&'m str, Vec<Link>> {
     });
     let shared = book.model.types.iter().filter(|ty| ty.body_of.is_none());
     let shared = shared.map(|ty| {
-        let link = Link {
-            text: format!("`{}`", ty.name),
-            href: desk.link(Page::Types, Anchor::of("type", &ty.name)),
-        };
+        let place = (Page::Types, Anchor::of("type", &ty.name));
+        let link = desk.to(format!("`{}`", ty.name), place);
         let mut texts = of_type(ty);
         texts.push(&ty.title);
         (link, texts)

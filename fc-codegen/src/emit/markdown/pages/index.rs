@@ -1,7 +1,7 @@
 //! The overview of the protocol.
 
 use super::shared::{Desk, list};
-use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::links::{Anchor, Page};
 use fc_spec::model::{Group, Party, Subject};
 use minijinja::{Value, context};
 use std::collections::HashMap;
@@ -20,10 +20,7 @@ pub(in crate::emit::markdown) fn index(desk: Desk<'_, '_>) -> Value {
         .filter(|page| !matches!(page, Page::Index));
     let pages = pages.map(|page| {
         context! {
-            link => Link {
-                text: page.title(lang).to_owned(),
-                href: desk.link(page, Anchor::none()),
-            },
+            link => desk.to(page.title(lang), (page, Anchor::none())),
             purpose => page.purpose(lang),
         }
     });

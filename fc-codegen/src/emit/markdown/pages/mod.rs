@@ -30,7 +30,6 @@ pub(super) use open_questions::open_questions;
 pub(super) use operation::operation;
 pub(super) use places::places;
 pub(super) use results::results;
-pub(super) use shared::Desk;
 pub(super) use tables::tables;
 pub(super) use types::types;
 pub(super) use wire::wire;

@@ -34,10 +34,7 @@ fn states_view(desk: Desk<'_, '_>, set: &StateSet) -> minijinja::Value {
         }
     });
     context! {
-        link => Link {
-            text: desk.lang.text(&ty.title).to_owned(),
-            href: desk.page.link(desk.book.place_of_type(ty)),
-        },
+        link => desk.to(desk.lang.text(&ty.title), desk.book.place_of_type(ty)),
         values => list(values),
     }
 }

@@ -97,9 +97,8 @@ fn count(desk: Desk<'_, '_>, severity: Severity) -> Value {
 }
 
 fn question<'m>(desk: Desk<'_, 'm>, question: &'m Question) -> Value {
-    let rows = desk.rows();
     let ids = question.ids.iter().filter(|id| **id != question.id);
-    let ids = ids.map(|id| rows.conflict(id));
+    let ids = ids.map(|id| desk.conflict(id));
     context! {
         anchor => Anchor::of("question", &question.id).id(),
         id => &question.id,

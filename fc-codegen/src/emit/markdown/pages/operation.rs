@@ -3,10 +3,9 @@
 use super::needs;
 use super::shared::{Desk, code, list};
 use super::streams;
-use crate::emit::markdown::available::AvailableView;
 use crate::emit::markdown::bytes::frame_view;
 use crate::emit::markdown::commented::commented;
-use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::links::{Anchor, Page};
 use crate::emit::markdown::rows::Row;
 use crate::emit::markdown::words::{self, Word as _};
 use crate::emit::packed;
@@ -40,12 +39,10 @@ pub(in crate::emit::markdown) fn operation<'m>(
         title => lang.text(&operation.title),
         aliases => lang.aliases(&operation.aliases),
         about => operation.about.as_ref().map(|about| desk.sentence(about)),
-        group => Link {
-            text: group
-                .map_or(operation.group.as_str(), |group| lang.text(&group.title))
-                .to_owned(),
-            href: desk.link(Page::Index, Anchor::of("group", &operation.group)),
-        },
+        group => desk.to(
+            group.map_or(operation.group.as_str(), |group| lang.text(&group.title)),
+            (Page::Index, Anchor::of("group", &operation.group)),
+        ),
         kind => operation.kind().name(),
         kind_word => operation.kind().word(lang),
         direction => words::direction(
@@ -64,13 +61,13 @@ pub(in crate::emit::markdown) fn operation<'m>(
         effect => operation.effect().map(Effect::name),
         effect_word => operation.effect().map(|effect| effect.word(lang)),
         effect_inferred => operation.effect_state() == Some(BodyState::Inferred),
-        kept => operation.kept.as_deref().map(|name| desk.rows().kept(name)),
+        kept => operation.kept.as_deref().map(|name| desk.kept(name)),
         since => &operation.since,
-        available => AvailableView::of(model, operation.available.as_ref(), lang),
+        available => desk.available(operation.available.as_ref()),
         deprecated => operation
             .deprecated
             .as_ref()
-            .map(|note| desk.rows().deprecation(note)),
+            .map(|note| desk.deprecation(note)),
         facts => facts(desk, operation),
         accepted => operation
             .accepted()
@@ -82,7 +79,7 @@ pub(in crate::emit::markdown) fn operation<'m>(
         streams => streams::of_command(desk, operation),
         stage => stage(operation),
         sides => list(sides),
-        enums => list(desk.rows().enums(operation)),
+        enums => list(desk.enums(operation)),
         results => results(desk, operation),
         ack => ack(operation, model.calls.ack),
         samples => Serde(desk.book.tabs(operation)),
@@ -194,9 +191,9 @@ fn rows(desk: Desk<'_, '_>, operation: &Operation, direction: Direction) -> Vec<
     match operation.kind() {
         Kind::Stream => {
             let ty = desk.book.model.types.get(&body.ty);
-            desk.rows().of_type(ty, Anchor::named(direction.name()))
+            desk.type_rows(ty, Anchor::named(direction.name()))
         }
-        Kind::Command | Kind::Report => desk.rows().message(direction, &body.ty),
+        Kind::Command | Kind::Report => desk.message_rows(direction, &body.ty),
     }
 }
 

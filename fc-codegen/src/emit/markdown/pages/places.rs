@@ -1,7 +1,7 @@
 //! Coordinate systems and stores, with the messages and types that use them.
 
 use super::shared::{Desk, list};
-use crate::emit::markdown::links::{Anchor, Link, Page};
+use crate::emit::markdown::links::{Anchor, Page};
 use crate::emit::markdown::rows::Row;
 use fc_spec::model::{CoordinateSystem, Direction, Store, TypeDef, TypeShape};
 use minijinja::{Value, context};
@@ -40,10 +40,7 @@ fn system(desk: Desk<'_, '_>, system: &CoordinateSystem, messages: Option<Vec<Va
         name => &system.name,
         title => desk.lang.text(&system.title),
         about => system.about.as_ref().map(|about| desk.sentence(about)),
-        types => list(shared.map(|ty| Link {
-                text: format!("`{}`", ty.name),
-                href: desk.page.link(desk.book.place_of_type(ty)),
-            })),
+        types => list(shared.map(|ty| desk.to(format!("`{}`", ty.name), desk.book.place_of_type(ty)))),
         messages => messages.unwrap_or_default(),
         spec => desk.spec(&system.location),
     }
@@ -61,9 +58,9 @@ fn store(desk: Desk<'_, '_>, store: &Store, messages: Option<Vec<Value>>) -> Val
         about => store.about.as_ref().map(|about| desk.sentence(about)),
         survives_restart => store.survives_restart,
         operations => list(operations.map(|it| desk.operation(it))),
-        tables => list(tables.map(|table| Link {
-                text: desk.lang.text(&table.title).to_owned(),
-                href: desk.link(Page::Tables, Anchor::of("table", &table.id)),
+        tables => list(tables.map(|table| {
+                let place = (Page::Tables, Anchor::of("table", &table.id));
+                desk.to(desk.lang.text(&table.title), place)
             })),
         messages => messages.unwrap_or_default(),
         spec => desk.spec(&store.location),

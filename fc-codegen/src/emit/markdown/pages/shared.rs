@@ -1,54 +1,14 @@
 //! Views that several pages share.
 
-use crate::emit::markdown::available::AvailableView;
-use crate::emit::markdown::book::Book;
+pub(super) use crate::emit::markdown::desk::Desk;
 use crate::emit::markdown::links::{Anchor, Link, Page};
-use crate::emit::markdown::mentions::linked;
-use crate::emit::markdown::rows::{Row, Rows};
+use crate::emit::markdown::rows::Row;
 use crate::emit::markdown::words::{self, Word as _};
-use fc_spec::model::Lang;
-use fc_spec::model::{
-    Answer, Body, BodyState, Change, Code, Direction, Location, Operation, Port, Subject, Text,
-};
+use fc_spec::model::{Answer, Body, BodyState, Change, Code, Direction, Operation, Port, Subject};
 use minijinja::{Value, context};
 use std::collections::HashMap;
 
-/// The model, the language and the page of a view.
-#[derive(Clone, Copy)]
-pub(in crate::emit::markdown) struct Desk<'b, 'm> {
-    pub(in crate::emit::markdown) book: &'b Book<'m>,
-    pub(in crate::emit::markdown) lang: Lang,
-    pub(in crate::emit::markdown) page: Page<'m>,
-}
-
-impl<'b, 'm> Desk<'b, 'm> {
-    pub(super) fn rows(self) -> Rows<'b, 'm> {
-        Rows {
-            book: self.book,
-            lang: self.lang,
-            page: self.page,
-        }
-    }
-
-    pub(super) fn link(self, page: Page<'_>, anchor: Anchor) -> String {
-        self.page.link((page, anchor))
-    }
-
-    pub(super) fn spec(self, location: &Location) -> Link {
-        Link {
-            text: location.file.clone(),
-            href: self.page.link_to_spec(location, self.lang),
-        }
-    }
-
-    /// Returns a link with the title of an operation.
-    pub(super) fn operation(self, operation: &Operation) -> Link {
-        Link {
-            text: self.lang.text(&operation.title).to_owned(),
-            href: self.link(Page::Operation(operation), Anchor::none()),
-        }
-    }
-
+impl<'m> Desk<'_, 'm> {
     /// Returns the fields of a message for which `key` returns a name, by that name.
     pub(super) fn fields_by(
         self,
@@ -58,12 +18,11 @@ impl<'b, 'm> Desk<'b, 'm> {
         key: impl Fn(&Row) -> Option<&str>,
     ) -> HashMap<String, Vec<Link>> {
         let mut fields: HashMap<String, Vec<Link>> = HashMap::new();
-        for row in self.rows().message(direction, &body.ty) {
+        for row in self.message_rows(direction, &body.ty) {
             if let Some(name) = key(&row) {
-                fields.entry(name.to_owned()).or_default().push(Link {
-                    text: format!("`{}`", row.path()),
-                    href: self.link(Page::Operation(operation), Anchor::named(row.anchor())),
-                });
+                let place = (Page::Operation(operation), Anchor::named(row.anchor()));
+                let link = self.to(format!("`{}`", row.path()), place);
+                fields.entry(name.to_owned()).or_default().push(link);
             }
         }
         fields
@@ -71,8 +30,7 @@ impl<'b, 'm> Desk<'b, 'm> {
 
     /// Returns an answer, without the link to the conflict `except`, which the page already shows.
     pub(super) fn answer(self, answer: &'m Answer, except: Option<&str>) -> Value {
-        let rows = self.rows();
-        let ids = answer.ids.iter().map(|id| rows.conflict(id));
+        let ids = answer.ids.iter().map(|id| self.conflict(id));
         let ids = ids.filter(|link| except.is_none_or(|except| link.text != except));
         let confirmed = answer.confirmed.as_ref();
         context! {
@@ -98,15 +56,10 @@ impl<'b, 'm> Desk<'b, 'm> {
             | (Subject::Type(_), Page::Types) => true,
             _ => false,
         };
-        (!own).then(|| Link {
-            text: self.book.name_of(subject, self.lang, self.page),
-            href: self.page.link(self.book.place_of(subject)),
+        (!own).then(|| {
+            let name = self.book.name_of(subject, self.lang, self.page);
+            self.to(name, self.book.place_of(subject))
         })
-    }
-
-    /// Returns a sentence of the spec with links to the operations that it names.
-    pub(super) fn sentence(self, text: &Text) -> String {
-        linked(self.book, self.page, self.lang.text(text))
     }
 
     pub(super) fn answers(self, answers: impl IntoIterator<Item = &'m Answer>) -> Vec<Value> {
@@ -157,8 +110,7 @@ impl<'b, 'm> Desk<'b, 'm> {
         let robot = self.lang.text(&protocol.robot.title);
         let app = self.lang.text(&protocol.app.title);
         let state = operation.state();
-        let available = operation.available.as_ref();
-        let available = AvailableView::of(self.book.model, available, self.lang);
+        let available = self.available(operation.available.as_ref());
         let is_shown = operation.is_from_source() || state != BodyState::Stated;
         context! {
             link => self.operation(operation),

@@ -2,7 +2,7 @@
 
 use super::picture;
 use super::shared::{Desk, list};
-use crate::emit::markdown::links::{Anchor, Link};
+use crate::emit::markdown::links::Anchor;
 use fc_spec::model::{Subject, Table, TypeDef, TypeShape, Value};
 use minijinja::context;
 use minijinja::value::Serde;
@@ -37,15 +37,12 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> minijinja::Value {
         id => &table.id,
         title => desk.lang.text(&table.title),
         about => desk.sentence(&table.about),
-        row_type => Link {
-            text: table.row.to_string(),
-            href: desk.page.link(desk.book.place_of_type(row_type)),
-        },
-        kept => table.kept.as_deref().map(|name| desk.rows().kept(name)),
+        row_type => desk.to(table.row.to_string(), desk.book.place_of_type(row_type)),
+        kept => table.kept.as_deref().map(|name| desk.kept(name)),
         picture => picture::picture(desk, table, row_type),
         rows => list(table.rows.iter().map(cells)),
         columns => Serde(columns),
-        fields => Serde(desk.rows().of_type(row_type, Anchor::of("table", &table.id))),
+        fields => Serde(desk.type_rows(row_type, Anchor::of("table", &table.id))),
         json => Value::Array(table.rows.clone()).pretty(),
         answers => desk.answers_to(&Subject::Table(table.id.clone())),
         spec => desk.spec(&table.location),

@@ -35,7 +35,7 @@ pub(in crate::emit::markdown) fn types(desk: Desk<'_, '_>) -> Value {
 fn view<'m>(desk: Desk<'_, 'm>, ty: &'m TypeDef) -> Value {
     let (shape, values) = match &ty.shape {
         TypeShape::Struct(_) => ("struct", None),
-        TypeShape::Enum(values) => ("enum", Some(desk.rows().enum_view(ty, values))),
+        TypeShape::Enum(values) => ("enum", Some(desk.enum_view(ty, values))),
         TypeShape::OneOf(_) => ("one_of", None),
     };
     let example = || desk.book.samples.named(ty, Profile::Example).pretty();
@@ -51,11 +51,11 @@ fn view<'m>(desk: Desk<'_, 'm>, ty: &'m TypeDef) -> Value {
             TypeShape::Struct(it) => it
                 .coordinates
                 .as_deref()
-                .map(|name| desk.rows().given(name)),
+                .map(|name| desk.given(name)),
             TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
         },
         shape,
-        rows => Serde(desk.rows().of_type(ty, Anchor::of("type", &ty.name))),
+        rows => Serde(desk.type_rows(ty, Anchor::of("type", &ty.name))),
         json => values.is_none().then(example),
         values,
         users => list(users),

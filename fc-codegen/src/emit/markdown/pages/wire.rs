@@ -116,7 +116,7 @@ fn envelope(desk: Desk<'_, '_>, direction: Direction) -> Value {
     let roles = desk.book.samples.envelope(direction);
     context! {
         side => direction.name(),
-        rows => Serde(desk.rows().envelope(direction)),
+        rows => Serde(desk.envelope_rows(direction)),
         roles => list(roles.iter().map(role)),
         json => desk
             .book
