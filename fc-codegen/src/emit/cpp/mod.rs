@@ -36,47 +36,31 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let groups = &groups::groups(context);
     let (headers, homes) = types::headers(context);
     let ids: Vec<&str> = headers.iter().map(|header| header.id).collect();
+    let include = |name: &str| format!("include/{space}/{name}");
+    let source = |name: &str| format!("src/{name}");
     let mut files = vec![
-        (format!("include/{space}/messages.hpp"), all(space, &ids)),
-        (
-            format!("include/{space}/protocol.hpp"),
-            protocol::header(context),
-        ),
-        (
-            "src/protocol.cpp".to_owned(),
-            protocol::source(context, groups),
-        ),
-        (
-            format!("include/{space}/client.hpp"),
-            client::header(context, groups),
-        ),
-        ("src/client.cpp".to_owned(), client::source(context, groups)),
-        (
-            format!("include/{space}/robot.hpp"),
-            robot::header(context, groups),
-        ),
-        ("src/robot.cpp".to_owned(), robot::source(context, groups)),
+        (include("messages.hpp"), all(space, &ids)),
+        (include("protocol.hpp"), protocol::header(context)),
+        (source("protocol.cpp"), protocol::source(context, groups)),
+        (include("client.hpp"), client::header(context, groups)),
+        (source("client.cpp"), client::source(context, groups)),
+        (include("robot.hpp"), robot::header(context, groups)),
+        (source("robot.cpp"), robot::source(context, groups)),
     ];
     if !context.package.ids.is_empty() {
-        files.push((
-            format!("include/{}", ids::path(context)),
-            ids::header(context),
-        ));
+        files.push((include("ids.hpp"), ids::header(context)));
     }
     let has_tables = !context.package.tables.is_empty();
     if has_tables {
-        files.push((
-            format!("include/{space}/tables.hpp"),
-            tables::header(context),
-        ));
-        files.push(("src/tables.cpp".to_owned(), tables::source(context)));
+        files.push((include("tables.hpp"), tables::header(context)));
+        files.push((source("tables.cpp"), tables::source(context)));
     }
     for header in &headers {
         let id = header.id;
         let here = &groups::of_header(groups, header, &homes);
-        let path = format!("include/{space}/groups/{id}.hpp");
+        let path = include(&format!("groups/{id}.hpp"));
         files.push((path, messages::header(context, header, here)));
-        let path = format!("src/groups/{id}.cpp");
+        let path = source(&format!("groups/{id}.cpp"));
         files.push((path, fields::source(context, header, here)));
     }
     files.push((SOURCES.to_owned(), sources(&ids, has_tables)));
