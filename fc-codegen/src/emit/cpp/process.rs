@@ -77,15 +77,9 @@ pub fn define(
             out.line("return false;");
         });
     }
-    let previous = if shape.order.is_some() {
-        "previous"
-    } else {
-        "/*previous*/"
-    };
-    let value = if shape.order.is_some() {
-        "value"
-    } else {
-        "/*value*/"
+    let (value, previous) = match shape.order {
+        Some(_) => ("value", "previous"),
+        None => ("/*value*/", "/*previous*/"),
     };
     let head = format!("bool is_in_order({by_value} {value}, {by_value} {previous}) noexcept {{");
     out.enclose(&head, "}", |out| {
@@ -137,7 +131,7 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
         let known = states.values.iter();
         let known =
             known.map(|it| format!("{held} == {space}::{}::{}", enumerators(item), it.name));
-        let known = any_of(&known.collect::<Vec<_>>());
+        let known = any_of(known);
         let [request, ty] = [call.request, item].map(|it| [space, "::", &*it.ty.name].concat());
         let values = [("request", &*request), ("ty", &ty), ("known", &known)];
         out.template("accepted", &values);
@@ -145,12 +139,16 @@ fn define_accepted(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     }
 }
 
-/// Joins conditions: `a || b`.
-fn any_of(conditions: &[String]) -> String {
-    if conditions.is_empty() {
-        return "false".to_owned();
+/// Returns the conditions with `operator` between them, or `none` without conditions.
+pub fn combined(conditions: impl Iterator<Item = String>, operator: &str, none: &str) -> String {
+    match conditions.joined(operator) {
+        all if all.is_empty() => none.to_owned(),
+        all => all,
     }
-    conditions.join(" || ")
+}
+
+fn any_of(conditions: impl Iterator<Item = String>) -> String {
+    combined(conditions, " || ", "false")
 }
 
 /// Declares the functions that tie a command to the reports that it sets off.
@@ -189,10 +187,7 @@ pub fn define_call(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
             let theirs = at(context, "report", &report.request.ty, &tie.report);
             format!("detail::may_be_same({ours}, {theirs})")
         });
-        let mut all = ties.joined(" && ");
-        if all.is_empty() {
-            all.push_str("true");
-        }
+        let all = combined(ties, " && ", "true");
         let [request, response, name] =
             [request, response, name].map(|it| [space, "::", it].concat());
         let values = [
@@ -237,21 +232,18 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
         out.template("of_report", &values);
         out.blank();
     };
-    let has_state = way.as_ref().map(|(way, _)| format!("{way} != nullptr"));
-    function(
-        out,
-        "has_state",
-        &has_state.unwrap_or_else(|| "false".to_owned()),
-    );
+    let has_state = way.iter().map(|(way, _)| format!("{way} != nullptr"));
+    function(out, "has_state", &any_of(has_state));
     let said = way.filter(|(_, says)| *says).map(|(way, _)| way);
-    let is_end = said
-        .as_ref()
-        .map(|way| format!("detail::holds({way}, [](const auto& it) {{ return is_final(it); }})"));
-    function(out, "is_end", &is_end.unwrap_or_else(|| "false".to_owned()));
-    let failed = failures
-        .iter()
-        .map(|way| format!("detail::holds({way}, [](const auto& it) {{ return is_error(it); }})"));
-    function(out, "is_failure", &any_of(&failed.collect::<Vec<_>>()));
+    let holds = |what: &'static str| {
+        move |way: &String| {
+            format!("detail::holds({way}, [](const auto& it) {{ return {what}(it); }})")
+        }
+    };
+    let is_end = said.iter().map(holds("is_final"));
+    function(out, "is_end", &any_of(is_end));
+    let is_failure = failures.iter().map(holds("is_error"));
+    function(out, "is_failure", &any_of(is_failure));
     let [now, before, result] = match &said {
         Some(way) => [
             format!("const auto* now = {way};"),

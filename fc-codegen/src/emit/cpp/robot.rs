@@ -4,6 +4,7 @@
 
 use super::groups::{NamedGroup, with_commands, with_reports};
 use super::layout::{Includes, header_file, source_file};
+use super::process::combined;
 use super::streams;
 use crate::package::about;
 use crate::package::context::Context;
@@ -202,18 +203,11 @@ pub fn source(context: &Context<'_>, groups: &[NamedGroup<'_, '_>]) -> String {
             for (name, range) in &ranges {
                 let (first, last) = (&range.first_spelling, &range.last_spelling);
                 // Compilers warn of a comparison that is always true.
-                let bounds: Vec<String> = [
+                let bounds = [
                     (range.first > 0).then(|| format!("context.code >= {first}")),
                     (range.last < u16::MAX).then(|| format!("context.code <= {last}")),
-                ]
-                .into_iter()
-                .flatten()
-                .collect();
-                let is_in = if bounds.is_empty() {
-                    "true".to_owned()
-                } else {
-                    bounds.join(" && ")
-                };
+                ];
+                let is_in = combined(bounds.into_iter().flatten(), " && ", "true");
                 out.line(format!("if ({is_in}) {}", serve_raw(name)));
             }
             out.line(serve_raw(UNKNOWN));
