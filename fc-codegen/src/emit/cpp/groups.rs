@@ -118,18 +118,14 @@ pub fn declare(
     let Some(first) = groups.first() else {
         return;
     };
-    includes.standard("vector");
-    includes.own("fc_runtime/protocol.hpp");
+    includes.add(&["vector"], &["protocol"]);
     let space = &namespace(context);
     out.blank();
     out.namespace(&format!("{space}::{}", first.space), |out| {
         for group in groups {
             out.blank();
             if !group.commands.is_empty() {
-                includes.standard("optional");
-                includes.standard("string_view");
-                includes.own("fc_runtime/typed.hpp");
-                includes.own("fc_runtime/types.hpp");
+                includes.add(&["optional", "string_view"], &["typed", "types"]);
                 client::calls(out, context, group);
                 out.blank();
                 robot::handlers(out, context, group);
@@ -138,25 +134,13 @@ pub fn declare(
                 out.blank();
             }
             if !group.reports.is_empty() {
-                includes.standard("optional");
-                includes.own("fc_runtime/push.hpp");
-                includes.own("fc_runtime/types.hpp");
+                includes.add(&["optional"], &["push", "types"]);
                 robot::reporters(out, context, group);
                 out.blank();
             }
             if !group.streams.is_empty() {
-                for name in [
-                    "cstddef",
-                    "cstdint",
-                    "optional",
-                    "string",
-                    "string_view",
-                    "utility",
-                ] {
-                    includes.standard(name);
-                }
-                includes.own("fc_runtime/data.hpp");
-                includes.own("fc_runtime/push.hpp");
+                includes.add(&["cstddef", "cstdint", "optional"], &["data", "push"]);
+                includes.add(&["string", "string_view", "utility"], &[]);
                 streams::parts(out, context, group);
                 out.blank();
             }

@@ -71,11 +71,17 @@ impl Includes {
     ) -> Self {
         let space = &namespace(context);
         let package = package.iter().map(|name| format!("{space}/{name}.hpp"));
+        let mut includes = Self::default();
+        includes.own.extend(package);
+        includes.add(standard, runtime);
+        includes
+    }
+
+    /// Adds headers of the standard library and of the runtime.
+    pub fn add(&mut self, standard: &[&'static str], runtime: &[&str]) {
         let runtime = runtime.iter().map(|name| format!("fc_runtime/{name}.hpp"));
-        Self {
-            standard: standard.iter().copied().collect(),
-            own: package.chain(runtime).collect(),
-        }
+        self.standard.extend(standard);
+        self.own.extend(runtime);
     }
 
     /// Adds a header of the standard library.

@@ -30,8 +30,7 @@ pub fn header(
     let space = &namespace(context);
     let mut body = context.source();
     let mut includes = Includes::default();
-    includes.standard("iosfwd");
-    includes.own("fc_runtime/message.hpp");
+    includes.add(&["iosfwd"], &["message"]);
     for id in &header.needs {
         includes.own(format!("{space}/groups/{id}.hpp"));
     }
@@ -80,8 +79,7 @@ fn types(
     body.blank();
     body.namespace("fc_runtime", |out| {
         for call in &calls {
-            includes.standard("cstdint");
-            includes.own("fc_runtime/operation.hpp");
+            includes.add(&["cstdint"], &["operation"]);
             operation(out, context, call);
             out.blank();
             process::declare_set_off(out, context, call);
@@ -205,7 +203,7 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, item
     let Some((command, name)) = package.declared_by(item) else {
         return;
     };
-    includes.standard("cstdint");
+    includes.add(&["cstdint"], &["call"]);
     out.documented(&about::errors(context, command));
     let open = format!("enum class {name} : std::int64_t {{");
     out.enclose(&open, "};", |out| {
@@ -216,7 +214,6 @@ fn errors(out: &mut Source, includes: &mut Includes, context: &Context<'_>, item
         }
     });
     out.template("declare_error", &[("name", name)]);
-    includes.own("fc_runtime/call.hpp");
 }
 
 fn enumeration(
@@ -252,9 +249,7 @@ fn enumeration(
             name.to_string()
         }
         EnumRepr::String => {
-            includes.standard("optional");
-            includes.standard("string");
-            includes.standard("utility");
+            includes.add(&["optional", "string", "utility"], &[]);
             text_enum(out, name, each);
             format!("const {name}&")
         }

@@ -206,13 +206,10 @@ pub fn samples_file(context: &Context<'_>) -> String {
     let space = &namespace(context);
     let mut out = context.source();
     out.line("// The samples of the documentation. They call every command and receive every report and stream.");
-    let mut includes = Includes::default();
-    for name in [
+    let standard = [
         "chrono", "cstdint", "iostream", "memory", "optional", "string", "variant",
-    ] {
-        includes.standard(name);
-    }
-    includes.own(format!("{space}/client.hpp"));
+    ];
+    let mut includes = Includes::new(context, &standard, &["client"], &[]);
     includes.own(format!("{space}/robot.hpp"));
     includes.lines(&mut out);
     out.blank();
