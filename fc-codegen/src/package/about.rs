@@ -122,31 +122,28 @@ pub fn enumeration<'m>(
     docs
 }
 
-/// Returns the description of the method for a range of codes.
-pub fn range(range: &CodeRange) -> Docs<'_> {
+/// Returns the title of the method for a range of codes, or for codes that are not in the spec.
+pub fn codes(range: Option<&CodeRange>) -> Docs<'_> {
+    let Some(range) = range else {
+        return Docs::said([
+            "功能码不在规范中的指令。",
+            "Commands with a code that is not in the spec.",
+        ]);
+    };
     let mut docs = Docs::titled(&range.text);
     let (first, last) = (&range.first_spelling, &range.last_spelling);
     docs.paragraph(format!(
         "Codes {first} to {last} without a separate method."
     ));
-    refused(&mut docs);
     docs
 }
 
-/// Returns the description of the method for codes that are not in the spec.
-pub fn unknown() -> Docs<'static> {
-    let mut docs = Docs::said([
-        "功能码不在规范中的指令。",
-        "Commands with a code that is not in the spec.",
-    ]);
-    refused(&mut docs);
-    docs
-}
-
-/// Adds the default behaviour of a method for requests without a type.
-fn refused(docs: &mut Docs<'_>) {
+/// Returns the description of such a method with its default behaviour.
+pub fn refused(range: Option<&CodeRange>) -> Docs<'_> {
+    let mut docs = codes(range);
     docs.both([
         "不实现此方法时，按未知指令拒绝。",
         "Without this method, the robot refuses them as unknown commands.",
     ]);
+    docs
 }

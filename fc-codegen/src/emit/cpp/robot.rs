@@ -50,9 +50,9 @@ fn robot(out: &mut Source, context: &Context<'_>, groups: &[NamedGroup<'_, '_>])
     out.template("complete_robot", &values);
     out.enclose("", "};", |out| {
         for (name, range) in pass_through(context) {
-            raw(out, &about::range(range), &name);
+            raw(out, &about::refused(Some(range)), &name);
         }
-        raw(out, &about::unknown(), UNKNOWN);
+        raw(out, &about::refused(None), UNKNOWN);
     });
 }
 

@@ -33,9 +33,9 @@ pub fn robot_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     out.docs(&docs);
     out.block(heading("public interface Robot", &handlers), |out| {
         for (name, range) in &ranges {
-            raw(out, name, &about::range(range));
+            raw(out, name, &about::refused(Some(range)));
         }
-        raw(out, &unknown, &about::unknown());
+        raw(out, &unknown, &about::refused(None));
     });
     let partial = robot_and(parts(groups, "Partial", has_commands).into_iter());
     let partial = heading("public interface PartialRobot", &partial);

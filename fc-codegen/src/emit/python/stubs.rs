@@ -126,7 +126,7 @@ fn complete(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) 
             out.blank();
             out.line("@rt.left_out");
             method(out, &open, parameters, "rt.Json", |out| {
-                out.docstring(&about::range(range));
+                out.docstring(&about::refused(Some(range)));
                 out.line("raise NotImplementedError");
             });
         }

@@ -86,14 +86,14 @@ fn robot(
             signature(out, command.method, types, ";");
         }
         for (name, range) in ranges {
-            out.documented(&about::range(range));
+            out.documented(&about::refused(Some(range)));
             out.line(format!(
                 "#[fc(range = {}..={})]",
                 range.first_spelling, range.last_spelling
             ));
             raw(out, protocol, name);
         }
-        out.documented(&about::unknown());
+        out.documented(&about::refused(None));
         out.line("#[fc(unknown)]");
         raw(out, protocol, UNKNOWN);
     });

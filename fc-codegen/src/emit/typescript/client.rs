@@ -2,7 +2,7 @@
 
 use super::context::{Context, own};
 use super::group::{Group, What, merged, parts};
-use super::messages::{deprecated, end, union};
+use super::messages::{deprecated, union};
 use super::operations::carried;
 use super::protocol;
 use super::source::{alternatives, head, named};
@@ -140,8 +140,7 @@ pub fn method(out: &mut Source, name: &str, parameters: &[String], result: &str)
 
 /// Returns the comment on the method of a stream.
 pub fn stream_docs<'m>(context: &Context<'_>, stream: &'m Operation) -> Docs<'m> {
-    let mut docs = facts::operation_docs(stream);
-    facts::operation_end(context.style, &mut docs, stream);
-    end(&mut docs, context, stream);
+    let mut docs = facts::method_docs(context, stream, |_| ());
+    deprecated(&mut docs, stream.deprecated.as_ref());
     docs
 }

@@ -101,18 +101,10 @@ fn structure(
     item: &Item<'_>,
     fields: &[Spelled<'_, Field>],
 ) {
-    let docs = match item.body_of() {
-        Some((operation, direction)) => {
-            let mut docs = facts::body_docs(context, operation, direction);
-            let withdrawn = operation.deprecated.as_ref();
-            deprecated(
-                &mut docs,
-                withdrawn.filter(|_| direction == Direction::Request),
-            );
-            docs
-        }
-        None => facts::type_docs(context, item),
-    };
+    let mut docs = facts::item_docs(context, item);
+    if let Some((operation, Direction::Request)) = item.body_of() {
+        deprecated(&mut docs, operation.deprecated.as_ref());
+    }
     out.docs(&docs);
     out.block(format!("export interface {}", item.ty.name), |out| {
         for field in fields {
@@ -200,10 +192,9 @@ fn errors(out: &mut Source, context: &Context<'_>, command: &Operation) {
     let docs = about::errors(context, command);
     out.blank();
     out.docs(&docs);
-    let errors = package.errors(command).map(|(error, result)| {
-        let docs = Docs::titled(error.cause.as_ref().unwrap_or(&result.text));
-        (docs, literal(&result.name))
-    });
+    let errors = package
+        .errors(command)
+        .map(|(error, result)| (about::error(error, result.of), literal(&result.name)));
     alternatives(out, name, &errors.collect::<Vec<_>>());
 }
 

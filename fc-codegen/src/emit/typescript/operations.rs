@@ -10,13 +10,13 @@ use super::messages::end;
 use super::source::{Source, float, head, literal, named};
 use crate::package::docs::Docs;
 use crate::package::expr::Expr;
-use crate::package::items::{Call, Shape};
+use crate::package::items::Call;
 use crate::package::language::Role;
 use crate::package::process::{is_followed, set_off};
 use crate::package::source::join;
 use crate::sample::{Profile, Samples};
 use fc_spec::model::{
-    Accepted, AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Text,
+    AcceptedIn, Ack, Cadence, Direction, Exchange, Operation, SetOff, StructRef, Text,
 };
 
 pub const COMMANDS: [&str; 2] = ["每条指令的描述数据。", "Every command as data."];
@@ -85,7 +85,6 @@ fn command(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, call:
         let report = Layout::path(["reports", method]);
         Some(Layout::object([("report", report), ("tied", tied)]))
     });
-    let accepted = operation.accepted();
     let members = facts_of(operation, None)
         .with(
             "effect",
@@ -96,10 +95,7 @@ fn command(out: &mut Source, context: &Context<'_>, samples: &Samples<'_>, call:
         .with("requestExample", example(Direction::Request))
         .with("responseExample", example(Direction::Response))
         .with("errors", Layout::object(errors))
-        .with(
-            "preconditions",
-            accepted.map(|it| preconditions(context, it)),
-        )
+        .with("preconditions", preconditions(context, operation))
         .with("setsOff", sets_off);
     let ty = command_type(context, operation);
     write(out, context, operation, [call.method, ty], &types, members);
@@ -185,17 +181,11 @@ fn example(
 }
 
 /// Returns the conditions under which a command is accepted.
-fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Layout {
-    let sets = accepted.state_sets().iter().map(|set| {
-        let item = context.package.item(&set.ty);
-        let ty = &*item.ty.name;
-        let known = match &item.shape {
-            Shape::Enum(_, values) => values.as_slice(),
-            _ => &[],
-        };
-        let values = known
-            .iter()
-            .filter(|value| set.values.contains(&value.wire));
+fn preconditions(context: &Context<'_>, command: &Operation) -> Option<Layout> {
+    let accepted = command.accepted()?;
+    let sets = context.accepted_states(command).into_iter().map(|set| {
+        let ty = &*set.item.ty.name;
+        let values = set.values.iter();
         let values = values.map(|value| Layout::path(["messages", ty, &value.name]));
         Layout::object([
             ("of", Layout::path(["schemas", ty])),
@@ -206,10 +196,9 @@ fn preconditions(context: &Context<'_>, accepted: &Accepted) -> Layout {
         AcceptedIn::Any => Layout::text("any"),
         AcceptedIn::States(_) => Layout::list(sets),
     });
-    Members::default()
-        .with("states", states)
-        .with("after", Layout::texts(&accepted.after))
-        .object()
+    let members = Members::default().with("states", states);
+    let after = Layout::texts(&accepted.after);
+    Some(members.with("after", after).object())
 }
 
 /// Returns the ties between a report and a call, as functions that select both values.

@@ -3,16 +3,17 @@
 use super::client::{method, stream_docs};
 use super::context::{Context, own};
 use super::group::{Group, What, extending, merged, parts};
-use super::messages::end;
+use super::messages::deprecated;
 use super::operations::carried;
 use super::protocol::{imported, ranges};
 use super::source::{head, named};
+use crate::package::about;
 use crate::package::docs::Docs;
 use crate::package::facts;
 use crate::package::items::Call;
 use crate::package::ranges::UNKNOWN;
 use crate::package::source::Source;
-use fc_spec::model::{Effect, Side};
+use fc_spec::model::Side;
 
 /// The word of a group's part of `PartialRobot`.
 const PARTIAL: &str = "partial_robot";
@@ -92,18 +93,9 @@ fn partial_robot(out: &mut Source, context: &Context<'_>, parts: &[String]) {
     let open = extending(out, "PartialRobot", parts);
     out.block(open, |out| {
         for (name, range) in ranges(context) {
-            let mut docs = Docs::titled(&range.text);
-            let (first, last) = (&range.first_spelling, &range.last_spelling);
-            docs.paragraph(format!(
-                "Codes {first} to {last} without a separate method."
-            ));
-            raw(out, docs, &name);
+            raw(out, about::codes(Some(range)), &name);
         }
-        let docs = Docs::said([
-            "功能码不在规范中的指令。",
-            "Commands with a code that is not in the spec.",
-        ]);
-        raw(out, docs, UNKNOWN);
+        raw(out, about::codes(None), UNKNOWN);
     });
 }
 
@@ -118,14 +110,6 @@ fn raw(out: &mut Source, mut docs: Docs<'_>, name: &str) {
     out.line(format!(
         "{name}?(request: RawRequest, context: Context): Answer<string>"
     ));
-}
-
-/// Returns `true` unless the spec states that the command moves nothing.
-fn may_move(command: &Call<'_>) -> bool {
-    !matches!(
-        command.operation.effect(),
-        Some(Effect::Read | Effect::Config)
-    )
 }
 
 /// Returns the runtime types that a group's part of the robot's side names.
@@ -155,16 +139,15 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
         docs.raw(format!("{{@inheritDoc {partial}.{}}}", command.method));
         out.docs(&docs);
         let parameters = parameters(context, command);
-        let parameters: &[String] = if may_move(command) { &parameters } else { &[] };
+        let parameters: &[String] = if command.may_move() { &parameters } else { &[] };
         method(out, command.method, parameters, &command.response.ty.name);
     });
     let audience = format!("audience?: {}", own(context, "Audience"));
     group.interface(out, context, "reporter", &group.reports, |out, report| {
-        let operation = report.operation;
-        let mut docs = facts::operation_docs(operation);
-        facts::operation_end(context.style, &mut docs, operation);
-        docs.paragraph("Resolves to the outcome at each app.");
-        end(&mut docs, context, operation);
+        let mut docs = facts::method_docs(context, report.operation, |docs| {
+            docs.paragraph("Resolves to the outcome at each app.");
+        });
+        deprecated(&mut docs, report.operation.deprecated.as_ref());
         out.docs(&docs);
         let parameters = [
             format!("report: {}", report.request.ty.name),
@@ -190,19 +173,14 @@ pub fn group(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
 }
 
 fn handler(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
-    let operation = command.operation;
-    let mut docs = facts::operation_docs(operation);
-    facts::operation_end(context.style, &mut docs, operation);
-    if context.package.error_type(operation).is_some() {
-        let method = command.method;
-        docs.raw(format!(
-            "`Refusal.declared(commands.{method}, …)` makes one of its errors."
-        ));
-    }
-    end(&mut docs, context, operation);
+    let method_name = command.method;
+    let mut docs = facts::command_docs(context, command.operation, |_| {
+        format!("`Refusal.declared(commands.{method_name}, …)` makes one of its errors.")
+    });
+    deprecated(&mut docs, command.operation.deprecated.as_ref());
     out.docs(&docs);
     let result = format!("{}<{}>", own(context, "Answer"), command.response.ty.name);
-    let name = [command.method, "?"].concat();
+    let name = [method_name, "?"].concat();
     method(out, &name, &parameters(context, command), &result);
 }
 
