@@ -1,7 +1,7 @@
 //! The assigned and the free codes of a spec, for people and as JSON.
 
 use crate::emit::markdown::{Lang, Word as _, purpose};
-use fc_spec::model::{CodeRange, Kind, Location, Model, Operation, RangeUse, RetiredCode};
+use fc_spec::model::{CodeRange, Kind, Location, Model, RangeUse, Text};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -44,35 +44,14 @@ enum Holder<'m> {
     Used {
         name: &'m str,
         kind: Kind,
-        zh: &'m str,
-        en: &'m str,
+        #[serde(flatten)]
+        title: &'m Text,
         place: &'m Location,
     },
     Retired {
-        zh: &'m str,
-        en: &'m str,
+        #[serde(flatten)]
+        text: &'m Text,
     },
-}
-
-impl<'m> From<&'m Operation> for Holder<'m> {
-    fn from(operation: &'m Operation) -> Self {
-        Self::Used {
-            name: &operation.name,
-            kind: operation.kind(),
-            zh: &operation.title.zh,
-            en: &operation.title.en,
-            place: &operation.location,
-        }
-    }
-}
-
-impl<'m> From<&'m RetiredCode> for Holder<'m> {
-    fn from(retired: &'m RetiredCode) -> Self {
-        Self::Retired {
-            zh: &retired.text.zh,
-            en: &retired.text.en,
-        }
-    }
 }
 
 impl<'m> CodeMap<'m> {
@@ -83,28 +62,39 @@ impl<'m> CodeMap<'m> {
             Some(Entry {
                 code: operation.code.value?,
                 spelling: &operation.code.spelling,
-                holder: operation.into(),
+                holder: Holder::Used {
+                    name: &operation.name,
+                    kind: operation.kind(),
+                    title: &operation.title,
+                    place: &operation.location,
+                },
             })
         });
         let retired = model.retired.iter().map(|retired| Entry {
             code: retired.code,
             spelling: &retired.spelling,
-            holder: retired.into(),
+            holder: Holder::Retired {
+                text: &retired.text,
+            },
         });
         let mut taken: Vec<Entry<'m>> = used.chain(retired).collect();
         taken.sort_by_key(|entry| entry.code);
-        let mut ranges: Vec<Range<'m>> = model.ranges.iter().map(Range::from).collect();
+        let codes = model.taken_codes();
+        let ranges = model.ranges.iter().map(|of| {
+            let all = usize::from(of.last.abs_diff(of.first)) + 1;
+            let gone = codes.range(of.first..=of.last).count();
+            Range {
+                of,
+                free: all.saturating_sub(gone),
+                taken: Vec::new(),
+            }
+        });
+        let mut ranges: Vec<Range<'m>> = ranges.collect();
         ranges.sort_by_key(|range| range.of.first);
         for entry in taken {
             if let Some(range) = ranges.iter_mut().find(|range| range.of.has(entry.code)) {
                 range.taken.push(entry);
             }
-        }
-        let codes = model.taken_codes();
-        for range in &mut ranges {
-            let all = usize::from(range.of.last.abs_diff(range.of.first)) + 1;
-            let gone = codes.range(range.of.first..=range.of.last).count();
-            range.free = all.saturating_sub(gone);
         }
         let next = |usage| model.next_code(usage, None).map(spelled);
         let uncoded = model.operations.iter();
@@ -179,16 +169,6 @@ impl<'m> CodeMap<'m> {
     }
 }
 
-impl<'m> From<&'m CodeRange> for Range<'m> {
-    fn from(range: &'m CodeRange) -> Self {
-        Self {
-            of: range,
-            free: 0,
-            taken: Vec::new(),
-        }
-    }
-}
-
 impl Range<'_> {
     fn title(&self, lang: Lang) -> String {
         let CodeRange {
@@ -226,26 +206,24 @@ impl Entry<'_> {
             Holder::Used {
                 name,
                 kind,
-                zh,
-                en,
+                title,
                 place,
             } => format!(
                 "{code}  {name:<width$}  {} · {} · {}:{}",
-                lang.pick(zh, en),
+                lang.text(title),
                 kind.word(lang),
                 place.file,
                 place.line
             ),
-            Holder::Retired { zh, en } => format!(
+            Holder::Retired { text } => format!(
                 "{code}  {}{}",
                 lang.pick("已退役：", "retired: "),
-                lang.pick(zh, en)
+                lang.text(text)
             ),
         }
     }
 }
 
-/// Returns a code as a spec writes it: `0x0A11`.
 fn spelled(code: u16) -> String {
     format!("0x{code:04X}")
 }
