@@ -4,7 +4,7 @@ use super::case::Case;
 use super::conditions;
 use super::edit::{Path, get, replaced};
 use super::quirks;
-use super::sites::sites;
+use super::sites::{shape_of, sites};
 use super::unknown::{with_unknown_keys, with_unknown_values};
 use crate::emit::json::{float, int};
 use crate::sample::Profile;
@@ -102,15 +102,12 @@ fn with_points(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Value {
 fn variants(case: &Case<'_, '_>, ty: &StructRef, full: &Value) -> Vec<(String, Value)> {
     let mut messages = Vec::new();
     for site in sites(case.samples, ty, full) {
-        let Type::Named(named) = site.ty else {
-            continue;
-        };
-        let types = &case.samples.model().types;
-        let TypeShape::OneOf(choice) = &types.get(named).shape else {
+        let Some(TypeShape::OneOf(choice)) = shape_of(case.samples, site.ty) else {
             continue;
         };
         for variant in choice.variants.iter().skip(1) {
-            let value = case.samples.named(types.get(&variant.ty), Profile::Example);
+            let ty = case.samples.model().types.get(&variant.ty);
+            let value = case.samples.named(ty, Profile::Example);
             let body = replaced(full, &site.path, value);
             messages.push((format!("variant_{}_{}", site.path, variant.name), body));
         }

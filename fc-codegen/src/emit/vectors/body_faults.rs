@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::edit::{Path, doubled, get, removed, replaced};
 use super::quirks::number_in;
-use super::sites::{Site, sites};
+use super::sites::{Site, shape_of, sites};
 use super::unknown::{UNKNOWN_KEY, unknown_enum_value};
 use crate::emit::json::{float, int, object, text};
 use crate::sample::Profile;
@@ -24,11 +24,8 @@ pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
     };
     for field in case.samples.envelope(case.direction) {
         let path = Path::default().key(&field.wire);
-        push(
-            "wrong_type",
-            &field.wire,
-            &replaced(&full, &path, wrong_type(&field.ty)),
-        );
+        let other = replaced(&full, &path, wrong_type(&field.ty));
+        push("wrong_type", &field.wire, &other);
         if !field.optional {
             push("missing_field", &field.wire, &removed(&full, &path));
         }
@@ -41,26 +38,16 @@ pub(super) fn of_operation(case: &Case<'_, '_>) -> Vec<Value> {
         if !site.present {
             continue;
         }
+        let name = site.path.to_string();
         if !site.field.optional && !site.is_item && !site.in_variant {
-            push(
-                "missing_field",
-                &site.path.to_string(),
-                &removed(&full, &site.path),
-            );
+            push("missing_field", &name, &removed(&full, &site.path));
         }
         if !site.is_item {
-            push(
-                "duplicate_key",
-                &site.path.to_string(),
-                &doubled(&full, &site.path),
-            );
+            push("duplicate_key", &name, &doubled(&full, &site.path));
         }
         for (error, form, value) in broken(case, &site, &full) {
-            push(
-                error,
-                &format!("{}{form}", site.path),
-                &replaced(&full, &site.path, value),
-            );
+            let body = replaced(&full, &site.path, value);
+            push(error, &format!("{name}{form}"), &body);
         }
     }
     entries
@@ -78,15 +65,9 @@ fn not_json(case: &Case<'_, '_>, full: &Value) -> Vec<Value> {
         bytes.extend(inside.bytes());
         bytes
     };
+    let cut_off = whole.strip_suffix('}').unwrap_or_default();
     let mut texts = vec![
-        (
-            "bad_json",
-            whole
-                .strip_suffix('}')
-                .unwrap_or_default()
-                .as_bytes()
-                .to_vec(),
-        ),
+        ("bad_json", cut_off.as_bytes().to_vec()),
         ("not_an_object", b"[1]".to_vec()),
     ];
     if case.id().is_some() {
@@ -97,10 +78,8 @@ fn not_json(case: &Case<'_, '_>, full: &Value) -> Vec<Value> {
         // The depth exceeds the limit by several levels, so that it does not matter whether the outermost object
         // counts.
         let depth = usize::try_from(limit).unwrap_or(0) + 8;
-        texts.push((
-            "too_deep",
-            with_first(("[".repeat(depth) + &"]".repeat(depth)).as_bytes()),
-        ));
+        let nested = "[".repeat(depth) + &"]".repeat(depth);
+        texts.push(("too_deep", with_first(nested.as_bytes())));
     }
     let entry = |(error, bytes): (&'static str, Vec<u8>)| {
         case.rejected(error, case.carrier(&bytes, EncodingRole::Plain), error)
@@ -116,15 +95,13 @@ fn broken(case: &Case<'_, '_>, site: &Site<'_>, full: &Value) -> Vec<Broken> {
     if *site.ty != Type::Json {
         values.push(("wrong_type", "", wrong_type(site.ty)));
     }
-    if let Type::Named(named) = site.ty {
-        match &case.samples.model().types.get(named).shape {
-            TypeShape::Enum(shape) => {
-                values.extend(unknown_value(shape, site.field));
-                values.extend(not_taken(shape, site.field));
-            }
-            TypeShape::OneOf(choice) => values.extend(no_variant(case, choice)),
-            TypeShape::Struct(_) => {}
+    match shape_of(case.samples, site.ty) {
+        Some(TypeShape::Enum(shape)) => {
+            values.extend(unknown_value(shape, site.field));
+            values.extend(not_taken(shape, site.field));
         }
+        Some(TypeShape::OneOf(choice)) => values.extend(no_variant(case, choice)),
+        Some(TypeShape::Struct(_)) | None => {}
     }
     let value = get(full, &site.path);
     values.extend(value.into_iter().flat_map(|value| other_forms(site, value)));

@@ -50,14 +50,8 @@ impl Case<'_, '_> {
     }
 
     pub(super) fn accepted(&self, case: &str, encoding: EncodingRole, body: Value) -> Value {
-        let text_of_body = body.to_string();
-        object([
-            ("name", text(&format!("{}_{case}", self.direction.name()))),
-            ("direction", text(self.direction.name())),
-            ("case", text(case)),
-            self.carrier(text_of_body.as_bytes(), encoding),
-            ("body", body),
-        ])
+        let carrier = self.carrier(body.to_string().as_bytes(), encoding);
+        self.entry(case, [("case", text(case)), carrier, ("body", body)])
     }
 
     pub(super) fn accepted_as(&self, case: &str, body: Value, canonical: &Value) -> Value {
@@ -74,13 +68,9 @@ impl Case<'_, '_> {
     pub(super) fn accepted_bytes(&self, encoding: EncodingRole, data: &[u8]) -> Option<Value> {
         let case = encoding.name();
         self.packs(encoding).then(|| {
-            object([
-                ("name", text(&format!("{}_{case}", self.direction.name()))),
-                ("direction", text(self.direction.name())),
-                ("case", text(case)),
-                self.carrier(data, encoding),
-                ("data", text(&hex(data))),
-            ])
+            let carrier = self.carrier(data, encoding);
+            let data = ("data", text(&hex(data)));
+            self.entry(case, [("case", text(case)), carrier, data])
         })
     }
 
@@ -90,11 +80,14 @@ impl Case<'_, '_> {
         carrier: (&'static str, Value),
         error: &str,
     ) -> Value {
-        object([
-            ("name", text(&format!("{}_{name}", self.direction.name()))),
-            ("direction", text(self.direction.name())),
-            carrier,
-            ("error", text(error)),
-        ])
+        self.entry(name, [carrier, ("error", text(error))])
+    }
+
+    /// Returns an entry: its name, its direction, and further keys.
+    fn entry<const N: usize>(&self, name: &str, keys: [(&str, Value); N]) -> Value {
+        let side = self.direction.name();
+        let name = ("name", text(&format!("{side}_{name}")));
+        let start = [name, ("direction", text(side))];
+        object(start.into_iter().chain(keys))
     }
 }

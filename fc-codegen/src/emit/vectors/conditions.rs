@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::edit::{get, removed, replaced};
-use super::sites::{Site, sites};
+use super::sites::{Site, shape_of, sites};
 use crate::sample::constraint::on_the_wire;
 use fc_spec::model::{Asked, Condition, Field, StructRef, Type, TypeShape, Value};
 
@@ -53,19 +53,16 @@ fn contradicted(
 /// Returns all values of a field with a bool or an enum.
 fn values(case: &Case<'_, '_>, field: &Field) -> Vec<Value> {
     let only = &field.details().constraints.only;
-    match &field.ty {
-        Type::Bool => {
+    match (&field.ty, shape_of(case.samples, &field.ty)) {
+        (Type::Bool, _) => {
             let both = [true, false].map(Value::Bool);
             both.map(|value| on_the_wire(value, field.wire_form)).into()
         }
-        Type::Named(named) => match &case.samples.model().types.get(named).shape {
-            TypeShape::Enum(shape) => {
-                let wires = shape.values.iter().map(|value| &value.wire);
-                let taken = wires.filter(|wire| only.is_empty() || only.contains(wire));
-                taken.map(Value::from).collect()
-            }
-            TypeShape::Struct(_) | TypeShape::OneOf(_) => Vec::new(),
-        },
+        (_, Some(TypeShape::Enum(shape))) => {
+            let wires = shape.values.iter().map(|value| &value.wire);
+            let taken = wires.filter(|wire| only.is_empty() || only.contains(wire));
+            taken.map(Value::from).collect()
+        }
         _ => Vec::new(),
     }
 }

@@ -1,6 +1,6 @@
 //! The common keys of all files of vectors.
 
-use crate::emit::json::{int, text};
+use crate::emit::json::{int, object, text};
 use fc_spec::model::{Operation, Value};
 
 /// The version of the format.
@@ -28,10 +28,5 @@ pub(super) fn contents(
         ("accepted", Value::Array(accepted)),
         ("rejected", Value::Array(rejected)),
     ];
-    let entries = [format].into_iter().chain(version).chain(rest);
-    Value::Object(
-        entries
-            .map(|(key, value)| (key.to_owned(), value))
-            .collect(),
-    )
+    object([format].into_iter().chain(version).chain(rest))
 }

@@ -34,6 +34,14 @@ pub(super) fn sites<'m>(samples: &Samples<'m>, ty: &StructRef, value: &Value) ->
     walk.sites
 }
 
+/// Returns the shape of a named type.
+pub(super) fn shape_of<'m>(samples: &Samples<'m>, ty: &Type) -> Option<&'m TypeShape> {
+    match ty {
+        Type::Named(named) => Some(&samples.model().types.get(named).shape),
+        _ => None,
+    }
+}
+
 struct Walk<'a, 'm> {
     samples: &'a Samples<'m>,
     sites: Vec<Site<'m>>,

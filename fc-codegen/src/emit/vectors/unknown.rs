@@ -1,10 +1,10 @@
 //! Messages of a newer peer, with keys and enum values that this spec does not have.
 
 use super::edit::{Path, get, replaced};
-use super::sites::sites;
+use super::sites::{shape_of, sites};
 use crate::emit::json::{int, object, text};
 use crate::sample::{Samples, constraint};
-use fc_spec::model::{EnumRepr, EnumType, Number, Scalar, StructRef, Type, TypeShape, Value};
+use fc_spec::model::{EnumRepr, EnumType, Number, Scalar, StructRef, TypeShape, Value};
 
 /// The name of the unknown key. Underscores are added if an object already has this key.
 pub(super) const UNKNOWN_KEY: &str = "unknownKey";
@@ -13,12 +13,8 @@ pub(super) const UNKNOWN_KEY: &str = "unknownKey";
 pub(super) fn with_unknown_keys(samples: &Samples<'_>, ty: &StructRef, value: &Value) -> Value {
     let mut objects = vec![Path::default()];
     for site in sites(samples, ty, value) {
-        let is_object = match site.ty {
-            Type::Named(named) => {
-                !matches!(samples.model().types.get(named).shape, TypeShape::Enum(_))
-            }
-            _ => false,
-        };
+        let shape = shape_of(samples, site.ty);
+        let is_object = matches!(shape, Some(TypeShape::Struct(_) | TypeShape::OneOf(_)));
         if site.present && is_object {
             objects.push(site.path);
         }
@@ -44,10 +40,7 @@ pub(super) fn with_unknown_values(
 ) -> Option<Value> {
     let mut copy = None;
     for site in sites(samples, ty, value) {
-        let Type::Named(named) = site.ty else {
-            continue;
-        };
-        let TypeShape::Enum(shape) = &samples.model().types.get(named).shape else {
+        let Some(TypeShape::Enum(shape)) = shape_of(samples, site.ty) else {
             continue;
         };
         if site.present
