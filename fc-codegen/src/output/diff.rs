@@ -1,6 +1,6 @@
 //! Differences between stale files and their new contents.
 
-use super::plan::Plan;
+use super::plan::{Plan, StaleFile};
 use similar::TextDiff;
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -25,19 +25,8 @@ impl Plan {
     /// Returns the difference of every stale file, sorted by path. Foreign files are not compared.
     #[must_use]
     pub fn diffs(&self) -> Vec<FileDiff> {
-        let created = self
-            .created
-            .iter()
-            .map(|file| diff(&file.path, None, Some(&file.contents)));
-        let updated = self
-            .updated
-            .iter()
-            .map(|file| diff(&file.path, Some(&file.before), Some(&file.contents)));
-        let orphaned = self
-            .orphaned
-            .iter()
-            .map(|file| diff(&file.path, Some(&file.before), None));
-        let mut diffs: Vec<FileDiff> = created.chain(updated).chain(orphaned).collect();
+        let stale = self.created.iter().chain(&self.updated);
+        let mut diffs: Vec<FileDiff> = stale.chain(&self.orphaned).map(diff).collect();
         diffs.sort_by(|a, b| a.path.cmp(&b.path));
         diffs
     }
@@ -53,9 +42,14 @@ pub fn unified(old_name: &str, new_name: &str, old: &str, new: &str) -> String {
         .to_string()
 }
 
-fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
-    let old = String::from_utf8_lossy(before.unwrap_or_default());
-    let new = after.unwrap_or_default();
+fn diff(file: &StaleFile) -> FileDiff {
+    let StaleFile {
+        path,
+        before,
+        contents,
+    } = file;
+    let old = String::from_utf8_lossy(before.as_deref().unwrap_or_default());
+    let new = contents.as_deref().unwrap_or_default();
     let name = |prefix: &str, there: bool| {
         if there {
             format!("{prefix}/{path}")
@@ -65,7 +59,7 @@ fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
     };
     let unified = unified(
         &name("a", before.is_some()),
-        &name("b", after.is_some()),
+        &name("b", contents.is_some()),
         &old,
         new,
     );
@@ -76,7 +70,7 @@ fn diff(path: &str, before: Option<&[u8]>, after: Option<&str>) -> FileDiff {
         let _ = writeln!(text, "… {rest} more lines");
     }
     FileDiff {
-        path: path.to_owned(),
+        path: path.clone(),
         text,
     }
 }

@@ -30,7 +30,7 @@ mod plan;
 pub use diff::{FileDiff, unified};
 pub use error::OutputError;
 pub use manifest::{MANIFEST, merge_manifests};
-pub use plan::{NewFile, OldFile, Plan, UpdatedFile, plan};
+pub use plan::{Plan, StaleFile, plan};
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -14,44 +14,26 @@ use std::path::{Path, PathBuf};
 pub struct Plan {
     root: PathBuf,
     /// New files.
-    pub created: Vec<NewFile>,
+    pub created: Vec<StaleFile>,
     /// Generated files with other contents.
-    pub updated: Vec<UpdatedFile>,
+    pub updated: Vec<StaleFile>,
     /// Files that are up to date.
     pub unchanged: Vec<String>,
     /// Generated files that are no longer needed.
-    pub orphaned: Vec<OldFile>,
+    pub orphaned: Vec<StaleFile>,
     /// Files in the places of artifacts that are not generated.
     pub foreign: Vec<String>,
 }
 
-/// A new file.
+/// A file that differs from its artifact, or that has no artifact.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NewFile {
+pub struct StaleFile {
     /// The path, relative to the root.
     pub path: String,
-    /// The contents.
-    pub contents: String,
-}
-
-/// A file to be overwritten.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UpdatedFile {
-    /// The path, relative to the root.
-    pub path: String,
-    /// The contents on the disk.
-    pub before: Vec<u8>,
-    /// The new contents.
-    pub contents: String,
-}
-
-/// A file to be removed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OldFile {
-    /// The path, relative to the root.
-    pub path: String,
-    /// The contents on the disk.
-    pub before: Vec<u8>,
+    /// The contents on the disk; `None` for a new file.
+    pub before: Option<Vec<u8>>,
+    /// The new contents; `None` for a file to be removed.
+    pub contents: Option<String>,
 }
 
 /// Compares artifacts with the disk below `root`. With `only`, the files and manifest entries of all other targets stay
@@ -105,9 +87,10 @@ pub fn plan(artifacts: Vec<Artifact>, root: &Path, only: &[String]) -> Result<Pl
         if !next.owns(path)
             && let Some(before) = disk::read(&place, path)?
         {
-            plan.orphaned.push(OldFile {
+            plan.orphaned.push(StaleFile {
                 path: path.to_owned(),
-                before,
+                before: Some(before),
+                contents: None,
             });
         }
     }
@@ -137,13 +120,12 @@ impl Plan {
                 paths: self.foreign.clone(),
             });
         }
-        let created = self.created.iter().map(|file| (&file.path, &file.contents));
-        let updated = self.updated.iter().map(|file| (&file.path, &file.contents));
-        let (last, first): (Vec<_>, Vec<_>) = created
-            .chain(updated)
-            .partition(|(path, _)| *path == MANIFEST);
+        let changed = self.created.iter().chain(&self.updated);
+        let (last, first): (Vec<_>, Vec<_>) = changed.partition(|file| file.path == MANIFEST);
         // Most of the time is spent in the system, which can do several writes at once.
-        let replace = |&(path, contents): &(&String, &String)| {
+        let replace = |file: &&StaleFile| {
+            let StaleFile { path, contents, .. } = file;
+            let contents = contents.as_deref().unwrap_or_default();
             disk::replace(&resolve(&self.root, path)?, path, contents.as_bytes())
         };
         first.par_iter().try_for_each(replace)?;
@@ -162,23 +144,28 @@ impl Plan {
         mine: bool,
     ) -> Result<(), OutputError> {
         match disk::read(place, &path)? {
-            None => self.created.push(NewFile { path, contents }),
             Some(before) if before == contents.as_bytes() => self.unchanged.push(path),
-            Some(before) if mine => self.updated.push(UpdatedFile {
-                path,
-                before,
-                contents,
-            }),
-            Some(_) => self.foreign.push(path),
+            Some(_) if !mine => self.foreign.push(path),
+            before => {
+                let list = match before {
+                    Some(_) => &mut self.updated,
+                    None => &mut self.created,
+                };
+                list.push(StaleFile {
+                    path,
+                    before,
+                    contents: Some(contents),
+                });
+            }
         }
         Ok(())
     }
 
     fn sort(&mut self) {
-        self.created.sort_by(|a, b| a.path.cmp(&b.path));
-        self.updated.sort_by(|a, b| a.path.cmp(&b.path));
+        for list in [&mut self.created, &mut self.updated, &mut self.orphaned] {
+            list.sort_by(|a, b| a.path.cmp(&b.path));
+        }
         self.unchanged.sort();
-        self.orphaned.sort_by(|a, b| a.path.cmp(&b.path));
         self.foreign.sort();
     }
 }
