@@ -115,9 +115,7 @@ pub fn enumeration<'m>(
     let mut docs = Docs::titled(&ty.title);
     docs.texts(ty.about.as_ref());
     open(&mut docs);
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
+    docs.paragraph(facts::since(ty.since.as_ref()).unwrap_or_default());
     docs.paragraph(context.links(&ty.location, "reference/types.md"));
     docs
 }

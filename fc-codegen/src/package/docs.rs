@@ -67,24 +67,10 @@ impl<'t> Docs<'t> {
         docs
     }
 
-    /// Creates a comment that starts with a Chinese and an English text, written unchanged.
-    pub fn written<T: Into<Cow<'t, str>>>(pair: [T; 2]) -> Self {
-        let mut docs = Self::default();
-        docs.raw_both(pair);
-        docs
-    }
-
     /// Creates a comment of one line, with the Chinese text before the English one. It is written unchanged.
     pub fn line<T: Into<Cow<'t, str>>>(pair: [T; 2]) -> Self {
         let mut docs = Self::default();
         docs.sentences(pair);
-        docs
-    }
-
-    /// Creates a comment that starts with a Chinese line and an English line, written unchanged.
-    pub fn two_lines<T: Into<Cow<'t, str>>>(pair: [T; 2]) -> Self {
-        let mut docs = Self::default();
-        docs.raw_lines(pair);
         docs
     }
 

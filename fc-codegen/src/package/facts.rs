@@ -17,9 +17,7 @@ pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>
     let details = field.details();
     let mut docs = Docs::titled(&field.text);
     docs.texts(details.note.as_ref());
-    if let Some(deprecation) = &details.deprecated {
-        withdrawn(&mut docs, deprecation);
-    }
+    withdrawn(&mut docs, details.deprecated.as_ref());
     let facts = condition.into_iter().chain(field_facts(style, field));
     docs.paragraph(facts.joined(" "));
     docs
@@ -28,18 +26,14 @@ pub fn field_docs<'m>(style: &Style, field: &'m Field, condition: Option<String>
 /// Returns the comment on a value of an enum.
 pub fn value_docs(value: &EnumValue) -> Docs<'_> {
     let mut docs = Docs::titled(&value.text);
-    if let Some(since) = &value.since {
-        docs.paragraph(format!("Since {since}."));
-    }
+    docs.paragraph(since(value.since.as_ref()).unwrap_or_default());
     docs.paragraph(value.available.as_ref().map_or_else(String::new, limits));
     docs
 }
 
 /// Adds the deprecation and the limits of a variant to its comment.
 pub fn variant_end(docs: &mut Docs<'_>, variant: &Variant) {
-    if let Some(deprecation) = &variant.deprecated {
-        withdrawn(docs, deprecation);
-    }
+    withdrawn(docs, variant.deprecated.as_ref());
     docs.paragraph(variant.available.as_ref().map_or_else(String::new, limits));
 }
 
@@ -93,26 +87,17 @@ pub fn kept(store: &str) -> String {
 fn field_facts(style: &Style, field: &Field) -> Vec<String> {
     let details = field.details();
     let mut facts = Vec::new();
-    if let Some(entity) = &details.refers {
-        facts.push(format!("Refers to the entity `{entity}`."));
-    }
-    if let Some(system) = &details.coordinates {
-        facts.push(coordinates(system));
-    }
-    if let Some(store) = &details.kept {
-        facts.push(kept(store));
-    }
-    if let Some(unit) = &details.unit {
-        facts.push(format!("Unit: {unit}."));
-    }
+    let refers = details.refers.as_ref();
+    facts.extend(refers.map(|entity| format!("Refers to the entity `{entity}`.")));
+    facts.extend(details.coordinates.as_deref().map(coordinates));
+    facts.extend(details.kept.as_deref().map(kept));
+    facts.extend(details.unit.as_ref().map(|unit| format!("Unit: {unit}.")));
     let constraints = &details.constraints;
-    if let Some(range) = range(style, constraints.min.as_ref(), constraints.max.as_ref()) {
-        facts.push(format!("Range: `{range}`."));
-    }
+    let range = range(style, constraints.min.as_ref(), constraints.max.as_ref());
+    facts.extend(range.map(|range| format!("Range: `{range}`.")));
     facts.extend(constraints.iter().filter_map(|it| constraint(style, it)));
-    if let Some(default) = &details.default {
-        facts.push(format!("Absent means {}.", code(&scalar(style, default))));
-    }
+    let default = details.default.as_ref().map(|it| code(&scalar(style, it)));
+    facts.extend(default.map(|default| format!("Absent means {default}.")));
     if let Example::Given(value) = &field.example {
         let value = value.to_string();
         // The documentation's page shows long examples.
@@ -146,9 +131,7 @@ fn field_facts(style: &Style, field: &Field) -> Vec<String> {
     if field.sensitive {
         facts.push(style.redacted.to_owned());
     }
-    if let Some(since) = &details.since {
-        facts.push(format!("Since {since}."));
-    }
+    facts.extend(since(details.since.as_ref()));
     facts.extend(details.available.as_ref().map(limits));
     facts
 }
@@ -175,9 +158,7 @@ pub fn limits(available: &Available) -> String {
 pub fn operation_docs(operation: &Operation) -> Docs<'_> {
     let mut docs = Docs::titled(&operation.title);
     docs.texts(operation.about.as_ref());
-    if let Some(deprecation) = &operation.deprecated {
-        withdrawn(&mut docs, deprecation);
-    }
+    withdrawn(&mut docs, operation.deprecated.as_ref());
     docs
 }
 
@@ -232,9 +213,7 @@ pub fn operation_facts(style: &Style, operation: &Operation) -> String {
         let errors = errors.map(|error| format!("`{}`", error.code));
         facts.push(format!("May be refused with {}.", errors.joined(", ")));
     }
-    if let Some(since) = &operation.since {
-        facts.push(format!("Since {since}."));
-    }
+    facts.extend(since(operation.since.as_ref()));
     facts.extend(operation.available.as_ref().map(limits));
     facts.join(" ")
 }
@@ -314,18 +293,23 @@ pub fn side_docs(operation: &Operation, direction: Direction) -> Docs<'static> {
 }
 
 /// Adds the reason for a deprecation, and the replacement.
-pub fn withdrawn(docs: &mut Docs<'_>, deprecation: &Deprecation) {
-    let zh = format!("已弃用：{}", deprecation.note.zh);
-    docs.both([zh, format!("Deprecated: {}", withdrawn_note(deprecation))]);
+fn withdrawn(docs: &mut Docs<'_>, deprecation: Option<&Deprecation>) {
+    if let Some(deprecation) = deprecation {
+        let zh = format!("已弃用：{}", deprecation.note.zh);
+        docs.both([zh, format!("Deprecated: {}", withdrawn_note(deprecation))]);
+    }
+}
+
+/// Returns the sentence about the release that added a part of the spec.
+pub fn since(release: Option<&String>) -> Option<String> {
+    release.map(|release| format!("Since {release}."))
 }
 
 /// Returns the deprecation as one English line, for an attribute.
 pub fn withdrawn_note(deprecation: &Deprecation) -> String {
     let note = deprecation.note.en.trim();
-    let since = deprecation
-        .since
-        .as_ref()
-        .map(|since| format!("since {since}: "));
+    let since = deprecation.since.as_ref();
+    let since = since.map(|since| format!("since {since}: "));
     let since = since.unwrap_or_default();
     match &deprecation.replaced_by {
         Some(other) => {
@@ -433,10 +417,8 @@ pub fn body_docs<'m>(
     if is_described {
         docs.texts(operation.about.as_ref());
     }
-    if direction == Direction::Request
-        && let Some(deprecation) = &operation.deprecated
-    {
-        withdrawn(&mut docs, deprecation);
+    if direction == Direction::Request {
+        withdrawn(&mut docs, operation.deprecated.as_ref());
     }
     if let Some(body) = operation.body(direction) {
         body_state(&mut docs, body);
@@ -466,9 +448,7 @@ pub fn type_docs<'m>(context: &Context<'_>, item: &Item<'m>) -> Docs<'m> {
     {
         docs.paragraph(coordinates(system));
     }
-    if let Some(since) = &ty.since {
-        docs.paragraph(format!("Since {since}."));
-    }
+    docs.paragraph(since(ty.since.as_ref()).unwrap_or_default());
     if let Some(place) = &ty.body_of
         && let Some(body) = item.operation.and_then(|it| it.body(place.side))
     {

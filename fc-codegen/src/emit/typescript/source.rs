@@ -98,7 +98,8 @@ pub fn alternatives(out: &mut Source, name: &str, all: &[(Docs<'_>, String)]) {
 /// Creates the head of a file whose source is the whole spec.
 pub fn head(context: &Context<'_>, about: [&str; 2]) -> Source {
     let mut out = context.source();
-    let mut docs = Docs::written(about);
+    let mut docs = Docs::default();
+    docs.raw_both(about);
     docs.raw("@module");
     out.docs(&docs);
     out.blank();
