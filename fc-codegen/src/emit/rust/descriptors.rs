@@ -8,9 +8,8 @@ use super::operation_macros;
 use super::source::Source;
 use crate::package::docs::Docs;
 use crate::package::language::Case;
-use fc_spec::model::{
-    AcceptedIn, Body, Cadence, Direction, Kind, Model, Operation, StateSet, Value,
-};
+use fc_spec::model::{AcceptedIn, Cadence, Direction, Kind, Model, Operation, StateSet, Value};
+use std::fmt::Display;
 
 /// The four tables: name, kind, and the comment in Chinese and in English.
 const TABLES: [(&str, Option<Kind>, &str, &str); 4] = [
@@ -57,7 +56,8 @@ pub fn descriptors_file(context: &Context<'_>) -> String {
         out.blank();
         out.line("/// One constant per operation. The module keeps their names apart from those of the tables.");
         out.block("mod operation", |out| {
-            if has_types(model) {
+            let mut operations = model.operations.iter();
+            if operations.any(|it| it.bodies().next().is_some()) {
                 out.import("crate", &["messages"]);
             }
             out.import("fc_runtime", &runtime_names(model));
@@ -71,41 +71,19 @@ pub fn descriptors_file(context: &Context<'_>) -> String {
     out.finish()
 }
 
-fn bodies(model: &Model) -> impl Iterator<Item = &Body> {
-    let operations = model.operations.iter();
-    operations.flat_map(Operation::bodies)
-}
-
-fn has_types(model: &Model) -> bool {
-    bodies(model).next().is_some()
-}
-
 fn runtime_names(model: &Model) -> Vec<&'static str> {
     let mut names = vec!["BodyInfo", "OperationInfo", "OperationKind"];
-    if model
-        .operations
-        .iter()
-        .any(|operation| operation.effect().is_some())
-    {
-        names.push("Effect");
-    }
-    let accepted = || model.operations.iter().filter_map(Operation::accepted);
-    if accepted().next().is_some() {
+    let any = |has: fn(&Operation) -> bool| model.operations.iter().any(has);
+    names.extend(any(|it| it.effect().is_some()).then_some("Effect"));
+    if any(|it| it.accepted().is_some()) {
         names.extend(["AcceptedStates", "Preconditions"]);
     }
-    if accepted().any(|accepted| !accepted.state_sets().is_empty()) {
+    let mut accepted = model.operations.iter().filter_map(Operation::accepted);
+    if accepted.any(|accepted| !accepted.state_sets().is_empty()) {
         names.push("States");
     }
-    let mut operations = model.operations.iter();
-    if operations.any(|operation| operation.cadence().is_some()) {
-        names.push("Cadence");
-    }
-    let operations = model.operations.iter();
-    let mut is_empty = operations.flat_map(|operation| {
-        let directions = Direction::ALL.iter();
-        directions.map(|direction| operation.body(*direction).is_none())
-    });
-    if is_empty.any(|is_empty| is_empty) {
+    names.extend(any(|it| it.cadence().is_some()).then_some("Cadence"));
+    if any(|it| Direction::ALL.iter().any(|side| it.body(*side).is_none())) {
         names.push("Empty");
     }
     names
@@ -117,18 +95,9 @@ fn constant(operation: &Operation) -> String {
 
 fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
     let kind = Case::Pascal.apply(operation.kind().name());
-    let code = match operation.code.value {
-        Some(_) => format!("Some({})", operation.code.spelling),
-        None => "None".to_owned(),
-    };
-    let effect = operation.effect().map_or_else(
-        || "None".to_owned(),
-        |effect| format!("Some(Effect::{})", Case::Pascal.apply(effect.name())),
-    );
-    let since = match &operation.since {
-        Some(since) => format!("Some({})", literal(since)),
-        None => "None".to_owned(),
-    };
+    let code = operation.code.value.map(|_| &operation.code.spelling);
+    let effect = operation.effect();
+    let effect = effect.map(|it| format!("Effect::{}", Case::Pascal.apply(it.name())));
     out.enclose(
         &format!(
             "pub(super) const {}: OperationInfo = OperationInfo {{",
@@ -138,18 +107,18 @@ fn descriptor(out: &mut Source, context: &Context<'_>, operation: &Operation) {
         |out| {
             for (field, value) in [
                 ("name", literal(&operation.name)),
-                ("code", code),
+                ("code", option(code)),
                 ("kind", format!("OperationKind::{kind}")),
-                ("effect", effect),
+                ("effect", option(effect)),
             ] {
                 out.line([field, ": ", &value, ","].concat());
             }
             preconditions(out, operation);
             for (field, value) in [
-                ("cadence", cadence(operation)),
+                ("cadence", option(operation.cadence().map(cadence))),
                 ("zh", literal(&operation.title.zh)),
                 ("en", literal(&operation.title.en)),
-                ("since", since),
+                ("since", option(operation.since.as_deref().map(literal))),
                 ("deprecated", operation.deprecated.is_some().to_string()),
                 ("docs", literal(&page_of(operation))),
                 ("spec", literal(&operation.location.file)),
@@ -195,19 +164,20 @@ fn states(out: &mut Source, set: &StateSet) {
     out.array("values: &[", &values, "],");
 }
 
-fn cadence(operation: &Operation) -> String {
-    match operation.cadence() {
-        None => "None".to_owned(),
-        Some(Cadence::OnChange(field)) => format!("Some(Cadence::OnChange({}))", literal(field)),
-        Some(Cadence::Step(step)) => format!(
-            "Some(Cadence::step({}, {:?}))",
-            literal(&step.field),
-            step.by.to_f64()
-        ),
-        Some(Cadence::EveryMs(ms)) => {
-            format!("Some(Cadence::every_ms({ms}))")
+/// Returns an `Option`.
+fn option(value: Option<impl Display>) -> String {
+    value.map_or_else(|| "None".to_owned(), |value| format!("Some({value})"))
+}
+
+fn cadence(cadence: &Cadence) -> String {
+    match cadence {
+        Cadence::OnChange(field) => format!("Cadence::OnChange({})", literal(field)),
+        Cadence::Step(step) => {
+            let (field, by) = (literal(&step.field), step.by.to_f64());
+            format!("Cadence::step({field}, {by:?})")
         }
-        Some(Cadence::WithinMs(ms)) => format!("Some(Cadence::within_ms({ms}))"),
+        Cadence::EveryMs(ms) => format!("Cadence::every_ms({ms})"),
+        Cadence::WithinMs(ms) => format!("Cadence::within_ms({ms})"),
     }
 }
 
