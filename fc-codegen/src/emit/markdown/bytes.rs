@@ -109,14 +109,8 @@ pub(super) fn ruler(layout: &Layout) -> String {
 
 /// Returns the letter of a header field in the ruler.
 pub(super) fn letter(index: usize) -> String {
-    let letters = 'A'..='Z';
-    match letters.clone().nth(index) {
-        Some(letter) => letter.to_string(),
-        None => letters
-            .clone()
-            .nth(index % 26)
-            .map_or_else(String::new, |letter| letter.to_lowercase().to_string()),
-    }
+    let mut letters = ('A'..='Z').chain(('a'..='z').cycle());
+    letters.nth(index).map_or_else(String::new, String::from)
 }
 
 /// Returns bytes as pairs of hexadecimal digits.

@@ -3,9 +3,7 @@
 use super::shared::{Desk, list};
 use crate::emit::markdown::links::Link;
 use crate::emit::markdown::rows::{Row, scalar};
-use fc_spec::model::{
-    Accepted, AcceptedIn, Cadence, Number, Operation, StateSet, Step, TypeShape, Value,
-};
+use fc_spec::model::{Accepted, AcceptedIn, Cadence, Operation, StateSet, TypeShape, Value};
 use minijinja::context;
 
 pub(super) fn accepted(desk: Desk<'_, '_>, accepted: &Accepted) -> minijinja::Value {
@@ -53,20 +51,12 @@ pub(super) fn cadence<'r>(
             href: row.map_or_else(String::new, |row| format!("#{}", row.anchor())),
         }
     });
-    let number = |number: &Number| Value::Number(number.clone()).to_string();
-    Some(context! {
-        field,
-        step => match cadence {
-            Cadence::Step(Step { by, .. }) => Some(number(by)),
-            Cadence::OnChange(_) | Cadence::EveryMs(_) | Cadence::WithinMs(_) => None,
-        },
-        every_ms => match cadence {
-            Cadence::EveryMs(ms) => Some(*ms),
-            Cadence::OnChange(_) | Cadence::Step(_) | Cadence::WithinMs(_) => None,
-        },
-        within_ms => match cadence {
-            Cadence::WithinMs(ms) => Some(*ms),
-            Cadence::OnChange(_) | Cadence::Step(_) | Cadence::EveryMs(_) => None,
-        },
-    })
+    let (step, every_ms, within_ms) = match cadence {
+        Cadence::OnChange(_) => (None, None, None),
+        Cadence::Step(step) => (Some(step.by.clone()), None, None),
+        Cadence::EveryMs(ms) => (None, Some(*ms), None),
+        Cadence::WithinMs(ms) => (None, None, Some(*ms)),
+    };
+    let step = step.map(|by| Value::Number(by).to_string());
+    Some(context! { field, step, every_ms, within_ms })
 }
