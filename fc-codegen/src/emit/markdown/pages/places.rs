@@ -3,20 +3,26 @@
 use super::shared::{Desk, list};
 use crate::emit::markdown::links::{Anchor, Page};
 use crate::emit::markdown::rows::Row;
-use fc_spec::model::{CoordinateSystem, Direction, Store, TypeDef, TypeShape};
+use fc_spec::model::{CoordinateSystem, Kind, Side, Store, TypeDef, TypeShape};
 use minijinja::{Value, context};
 use std::collections::HashMap;
 
 pub(in crate::emit::markdown) fn places(desk: Desk<'_, '_>) -> Value {
     let model = desk.book.model;
+    let operations = || {
+        model
+            .operations
+            .iter()
+            .filter(|it| it.kind() != Kind::Stream)
+    };
     let mut systems = HashMap::new();
     let mut stores = HashMap::new();
     // Building all messages is unnecessary if the spec has no systems and no stores.
     if !model.coordinates.is_empty() {
-        systems = messages(desk, Row::system);
+        systems = desk.messages_by(operations(), Row::system);
     }
     if !model.stores.is_empty() {
-        stores = messages(desk, Row::store);
+        stores = desk.messages_by(operations(), Row::store);
     }
     let of_spec = model.coordinates.iter();
     let systems = of_spec.map(|it| system(desk, it, systems.remove(&it.name)));
@@ -28,7 +34,9 @@ pub(in crate::emit::markdown) fn places(desk: Desk<'_, '_>) -> Value {
     }
 }
 
-fn system(desk: Desk<'_, '_>, system: &CoordinateSystem, messages: Option<Vec<Value>>) -> Value {
+type Messages = Vec<(Side, Value)>;
+
+fn system(desk: Desk<'_, '_>, system: &CoordinateSystem, messages: Option<Messages>) -> Value {
     let is_given = |ty: &&TypeDef| match &ty.shape {
         TypeShape::Struct(shape) => shape.coordinates.as_ref() == Some(&system.name),
         TypeShape::Enum(_) | TypeShape::OneOf(_) => false,
@@ -41,12 +49,12 @@ fn system(desk: Desk<'_, '_>, system: &CoordinateSystem, messages: Option<Vec<Va
         title => desk.lang.text(&system.title),
         about => system.about.as_ref().map(|about| desk.sentence(about)),
         types => list(shared.map(|ty| desk.to(format!("`{}`", ty.name), desk.book.place_of_type(ty)))),
-        messages => messages.unwrap_or_default(),
+        messages => list(messages.into_iter().flatten().map(|it| it.1)),
         spec => desk.spec(&system.location),
     }
 }
 
-fn store(desk: Desk<'_, '_>, store: &Store, messages: Option<Vec<Value>>) -> Value {
+fn store(desk: Desk<'_, '_>, store: &Store, messages: Option<Messages>) -> Value {
     let model = desk.book.model;
     let is_kept = |kept: &Option<String>| kept.as_ref() == Some(&store.name);
     let operations = model.operations.iter().filter(|it| is_kept(&it.kept));
@@ -62,23 +70,7 @@ fn store(desk: Desk<'_, '_>, store: &Store, messages: Option<Vec<Value>>) -> Val
                 let place = (Page::Tables, Anchor::of("table", &table.id));
                 desk.to(desk.lang.text(&table.title), place)
             })),
-        messages => messages.unwrap_or_default(),
+        messages => list(messages.into_iter().flatten().map(|it| it.1)),
         spec => desk.spec(&store.location),
     }
-}
-
-/// Returns the messages with fields for which `key` returns a name, by that name.
-fn messages(desk: Desk<'_, '_>, key: impl Fn(&Row) -> Option<&str>) -> HashMap<String, Vec<Value>> {
-    let mut found: HashMap<String, Vec<Value>> = HashMap::new();
-    let operations = desk.book.model.operations.iter();
-    for (operation, messages) in operations.filter_map(|it| Some((it, it.messages()?))) {
-        for &direction in Direction::ALL {
-            let body = messages.body(direction);
-            for (name, fields) in desk.fields_by(operation, direction, body, &key) {
-                let list = found.entry(name).or_default();
-                list.push(desk.message(operation, direction, fields));
-            }
-        }
-    }
-    found
 }

@@ -4,13 +4,41 @@ pub(super) use crate::emit::markdown::desk::Desk;
 use crate::emit::markdown::links::{Anchor, Link, Page};
 use crate::emit::markdown::rows::Row;
 use crate::emit::markdown::words::{self, Word as _};
-use fc_spec::model::{Answer, Body, BodyState, Change, Code, Direction, Operation, Port, Subject};
+use fc_spec::model::{
+    Answer, Body, BodyState, Change, Code, Direction, Operation, Port, Side, Subject,
+};
 use minijinja::{Value, context};
 use std::collections::HashMap;
 
 impl<'m> Desk<'_, 'm> {
+    /// Returns the messages with fields for which `key` returns a name, by that name. Each message has its sender.
+    pub(super) fn messages_by(
+        self,
+        operations: impl Iterator<Item = &'m Operation>,
+        key: impl Fn(&Row) -> Option<&str>,
+    ) -> HashMap<String, Vec<(Side, Value)>> {
+        let mut found: HashMap<String, Vec<(Side, Value)>> = HashMap::new();
+        for operation in operations {
+            for &direction in operation.directions() {
+                let Some(body) = operation.body(direction) else {
+                    continue;
+                };
+                for (name, fields) in self.fields_by(operation, direction, body, &key) {
+                    let message = context! {
+                        operation => self.operation(operation),
+                        side => words::side(operation.kind(), direction, self.lang),
+                        fields => list(fields),
+                    };
+                    let messages = found.entry(name).or_default();
+                    messages.push((sender(operation, direction), message));
+                }
+            }
+        }
+        found
+    }
+
     /// Returns the fields of a message for which `key` returns a name, by that name.
-    pub(super) fn fields_by(
+    fn fields_by(
         self,
         operation: &Operation,
         direction: Direction,
@@ -78,20 +106,6 @@ impl<'m> Desk<'_, 'm> {
         changes.into_iter().map(item).collect()
     }
 
-    /// Returns a message and some of its fields.
-    pub(super) fn message(
-        self,
-        operation: &Operation,
-        direction: Direction,
-        fields: Vec<Link>,
-    ) -> Value {
-        context! {
-            operation => self.operation(operation),
-            side => words::side(operation.kind(), direction, self.lang),
-            fields => list(fields),
-        }
-    }
-
     pub(super) fn ports(self) -> Vec<Value> {
         let view = |port: &Port| {
             context! {
@@ -123,6 +137,13 @@ impl<'m> Desk<'_, 'm> {
             deprecated => operation.deprecated.is_some(),
             available,
         }
+    }
+}
+
+fn sender(operation: &Operation, direction: Direction) -> Side {
+    match (operation.sender, direction) {
+        (Side::Robot, Direction::Request) | (Side::App, Direction::Response) => Side::Robot,
+        (Side::App, Direction::Request) | (Side::Robot, Direction::Response) => Side::App,
     }
 }
 
