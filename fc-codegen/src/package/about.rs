@@ -3,8 +3,10 @@
 use super::context::{Context, page_of};
 use super::docs::Docs;
 use super::facts;
+use super::items::Spelled;
 use fc_spec::model::{
-    CodeRange, DeclaredError, Entity, Group, Model, Operation, ResultCode, Table, TypeDef,
+    CodeRange, DeclaredError, Direction, Entity, EnvelopeField, Group, Model, Operation,
+    ResultCode, Table, TypeDef,
 };
 
 /// The description of the layer below the messages.
@@ -13,17 +15,40 @@ pub const WIRE: [&str; 2] = [
     "The layer below the messages: frame header, envelopes, result codes, ports and limits.",
 ];
 
-/// The description of the envelope of requests.
-pub const REQUEST_ENVELOPE: [&str; 2] = [
-    "每个请求和上报都带的公共字段。",
-    "The keys of every request and report, in addition to those of its body.",
-];
+/// An envelope, as a type of the package.
+pub struct Envelope<'p, 'm> {
+    /// The direction of the messages.
+    pub side: &'static str,
+    /// The name of the type.
+    pub name: &'static str,
+    /// The description of the type.
+    pub about: [&'static str; 2],
+    /// The keys.
+    pub fields: &'p [Spelled<'m, EnvelopeField>],
+}
 
-/// The description of the envelope of responses.
-pub const RESPONSE_ENVELOPE: [&str; 2] = [
-    "每个响应和应答都带的公共字段。",
-    "The keys of every response and acknowledgement, in addition to those of its body.",
-];
+/// Returns the envelopes of requests and of responses.
+pub fn envelopes<'p, 'm>(context: &'p Context<'m>) -> [Envelope<'p, 'm>; 2] {
+    let request = Envelope {
+        side: Direction::Request.name(),
+        name: "RequestEnvelope",
+        about: [
+            "每个请求和上报都带的公共字段。",
+            "The keys of every request and report, in addition to those of its body.",
+        ],
+        fields: &context.package.request_envelope,
+    };
+    let response = Envelope {
+        side: Direction::Response.name(),
+        name: "ResponseEnvelope",
+        about: [
+            "每个响应和应答都带的公共字段。",
+            "The keys of every response and acknowledgement, in addition to those of its body.",
+        ],
+        fields: &context.package.response_envelope,
+    };
+    [request, response]
+}
 
 /// The description of the tables of constants.
 pub const TABLES: [&str; 2] = ["规范中的常量表。", "Tables of constants in the spec."];

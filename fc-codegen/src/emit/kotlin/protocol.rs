@@ -18,21 +18,9 @@ use fc_spec::model::{DigestAlgorithm, EnvelopeField, HeaderField, HeaderRole};
 pub fn protocol_file(context: &Context<'_>, groups: &[Group<'_, '_>]) -> Source {
     let mut out = context.source();
     protocol(&mut out, context, groups);
-    let package = &context.package;
-    for (name, said, fields) in [
-        (
-            "RequestEnvelope",
-            about::REQUEST_ENVELOPE,
-            &package.request_envelope,
-        ),
-        (
-            "ResponseEnvelope",
-            about::RESPONSE_ENVELOPE,
-            &package.response_envelope,
-        ),
-    ] {
-        out.documented(&Docs::said(said));
-        envelope(&mut out, context, name, fields);
+    for envelope in about::envelopes(context) {
+        out.documented(&Docs::said(envelope.about));
+        self::envelope(&mut out, context, envelope.name, envelope.fields);
     }
     out.blank();
     results(&mut out, context);

@@ -5,7 +5,7 @@ use super::messages::annotation;
 use super::modules::{GroupPart, ModulePlan};
 use super::operations::{ack, seconds};
 use super::source::{Code, PYTHON, Python, tuple};
-use crate::package::about;
+use crate::package::about::{self, Envelope};
 use crate::package::context::Context;
 use crate::package::digits::grouped;
 use crate::package::docs::Docs;
@@ -64,22 +64,10 @@ pub fn protocol_file(context: &Context<'_>, plan: &ModulePlan<'_, '_>) -> String
     plan.import(&mut out, &KINDS.map(|(_, kind)| GroupPart::All(kind)));
     out.gap();
     results(&mut out, context);
-    out.gap();
-    envelope(
-        &mut out,
-        context,
-        "RequestEnvelope",
-        about::REQUEST_ENVELOPE,
-        &package.request_envelope,
-    );
-    out.gap();
-    envelope(
-        &mut out,
-        context,
-        "ResponseEnvelope",
-        about::RESPONSE_ENVELOPE,
-        &package.response_envelope,
-    );
+    for envelope in about::envelopes(context) {
+        out.gap();
+        self::envelope(&mut out, context, &envelope);
+    }
     out.gap();
     protocol(&mut out, context, plan);
     out.finish()
@@ -102,17 +90,11 @@ fn results(out: &mut Source, context: &Context<'_>) {
     });
 }
 
-fn envelope(
-    out: &mut Source,
-    context: &Context<'_>,
-    name: &str,
-    docs: [&'static str; 2],
-    fields: &[Spelled<'_, EnvelopeField>],
-) {
+fn envelope(out: &mut Source, context: &Context<'_>, envelope: &Envelope<'_, '_>) {
     out.line("@dataclass(slots=True, kw_only=True)");
-    out.suite(&format!("class {name}(rt.Message)"), |out| {
-        out.docstring(&Docs::said(docs));
-        for field in fields {
+    out.suite(&format!("class {}(rt.Message)", envelope.name), |out| {
+        out.docstring(&Docs::said(envelope.about));
+        for field in envelope.fields {
             let ty = annotation(context, &field.ty, field.optional);
             let absent = if field.optional { " = None" } else { "" };
             out.blank();

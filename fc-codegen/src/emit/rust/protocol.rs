@@ -4,7 +4,7 @@ use super::context::{Context, page_of};
 use super::enums::{other_name, other_variant};
 use super::literal::literal;
 use super::source::Source;
-use crate::package::about;
+use crate::package::about::{self, Envelope};
 use crate::package::digits::grouped;
 use crate::package::docs::Docs;
 use crate::package::facts;
@@ -12,13 +12,10 @@ use crate::package::items::Spelled;
 use crate::package::joined::Joined;
 use crate::package::language::Case;
 use crate::package::wire::WireFacts;
-use fc_spec::model::{
-    DigestAlgorithm, Direction, EnvelopeField, HeaderField, HeaderQuirk, HeaderType,
-};
+use fc_spec::model::{DigestAlgorithm, HeaderField, HeaderQuirk, HeaderType};
 
 /// Generates `protocol.rs`.
 pub fn protocol_file(context: &Context<'_>) -> String {
-    let package = &context.package;
     let mut out = context.source();
     out.inner_docs(&Docs::said(about::WIRE));
     out.blank();
@@ -42,20 +39,10 @@ pub fn protocol_file(context: &Context<'_>) -> String {
     protocol(&mut out, context);
     out.blank();
     header(&mut out, context);
-    out.blank();
-    envelope(
-        &mut out,
-        context,
-        Direction::Request,
-        &package.request_envelope,
-    );
-    out.blank();
-    envelope(
-        &mut out,
-        context,
-        Direction::Response,
-        &package.response_envelope,
-    );
+    for envelope in about::envelopes(context) {
+        out.blank();
+        self::envelope(&mut out, context, &envelope);
+    }
     out.blank();
     results(&mut out, context);
     streams(&mut out, context);
@@ -201,26 +188,17 @@ fn header_field(out: &mut Source, field: &Spelled<'_, HeaderField>) {
     out.line(format!("pub {}: {ty},", field.name));
 }
 
-fn envelope(
-    out: &mut Source,
-    context: &Context<'_>,
-    side: Direction,
-    fields: &[Spelled<'_, EnvelopeField>],
-) {
-    let about = match side {
-        Direction::Request => about::REQUEST_ENVELOPE,
-        Direction::Response => about::RESPONSE_ENVELOPE,
-    };
-    let (word, name) = (side.name(), Case::Pascal.apply(side.name()));
-    out.docs(&Docs::said(about));
+fn envelope(out: &mut Source, context: &Context<'_>, envelope: &Envelope<'_, '_>) {
+    let fields = envelope.fields;
+    out.docs(&Docs::said(envelope.about));
     let defaults = fields.iter().all(|field| field.optional);
     out.line(if defaults {
         "#[derive(Clone, Debug, Default, PartialEq, Message, Envelope)]"
     } else {
         "#[derive(Clone, Debug, PartialEq, Message, Envelope)]"
     });
-    out.line(format!("#[fc(envelope = \"{word}\")]"));
-    out.block(format!("pub struct {name}Envelope"), |out| {
+    out.line(format!("#[fc(envelope = \"{}\")]", envelope.side));
+    out.block(format!("pub struct {}", envelope.name), |out| {
         for field in fields {
             out.documented(&Docs::titled(&field.text));
             let name = &field.name;

@@ -5,7 +5,7 @@ use super::layout::{Layout, Members};
 use super::operations::ack_policy;
 use super::schemas::type_schema;
 use super::source::{head, named, property};
-use crate::package::about;
+use crate::package::about::{self, Envelope};
 use crate::package::docs::Docs;
 use crate::package::items::Spelled;
 use crate::package::language::Case;
@@ -19,7 +19,6 @@ use fc_spec::model::{
 const OWN_LIMITS: [(&str, u32); 2] = [("inflateRatio", 256), ("jsonValues", 1 << 20)];
 
 pub fn file(context: &Context<'_>) -> String {
-    let package = &context.package;
     let mut out = head(context, about::WIRE);
     named(
         &mut out,
@@ -27,35 +26,19 @@ pub fn file(context: &Context<'_>) -> String {
         ["Struct", "Wire"],
         "../src/runtime.ts",
     );
-    envelope(
-        &mut out,
-        context,
-        "RequestEnvelope",
-        about::REQUEST_ENVELOPE,
-        &package.request_envelope,
-    );
-    envelope(
-        &mut out,
-        context,
-        "ResponseEnvelope",
-        about::RESPONSE_ENVELOPE,
-        &package.response_envelope,
-    );
+    for envelope in about::envelopes(context) {
+        self::envelope(&mut out, context, &envelope);
+    }
     results(&mut out, context);
     out.template("wire", &[]);
     wire(context).write(&mut out, "export const wire: Wire = ", "");
     out.finish()
 }
 
-fn envelope(
-    out: &mut Source,
-    context: &Context<'_>,
-    name: &str,
-    docs: [&'static str; 2],
-    fields: &[Spelled<'_, EnvelopeField>],
-) {
-    out.blank();
-    out.docs(&Docs::said(docs));
+fn envelope(out: &mut Source, context: &Context<'_>, envelope: &Envelope<'_, '_>) {
+    let (name, fields) = (envelope.name, envelope.fields);
+    let docs = &Docs::said(envelope.about);
+    out.documented(docs);
     if fields.is_empty() {
         out.line(format!("export interface {name} {{}}"));
     } else {
@@ -74,8 +57,7 @@ fn envelope(
         ("fields", Layout::lines(schemas)),
     ];
     let head = format!("export const {name}: Struct<{name}> = ");
-    out.blank();
-    out.docs(&Docs::said(docs));
+    out.documented(docs);
     Layout::object(members).write(out, &head, "");
 }
 
