@@ -158,11 +158,7 @@ impl Source {
     /// Writes `open a, b close` on one line if it fits, otherwise every item on a separate line.
     pub fn list<S: AsRef<str>>(&mut self, open: &str, items: &[S], close: &str) {
         let joined = join(items);
-        if self.has_room([open, &joined, close]) {
-            self.line([open, &joined, close].concat());
-        } else {
-            self.lines(open, items, close);
-        }
+        self.line_or([open, &joined, close], |out| out.lines(open, items, close));
     }
 
     /// Writes `open`, every item on a separate line with a comma, and `close`.
@@ -196,6 +192,15 @@ impl Source {
     pub fn room(&self) -> usize {
         let indent = self.level * self.style.indent.len();
         self.style.width.saturating_sub(indent)
+    }
+
+    /// Writes the parts on one line if they fit. Otherwise calls `broken`.
+    pub fn line_or<const N: usize>(&mut self, parts: [&str; N], broken: impl FnOnce(&mut Self)) {
+        if self.has_room(parts) {
+            self.line(parts.concat());
+        } else {
+            broken(self);
+        }
     }
 
     /// Returns `true` if these parts fit on one line at the current level.

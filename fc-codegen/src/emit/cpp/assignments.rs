@@ -63,11 +63,9 @@ impl<'c, 'm> Assignments<'c, 'm> {
                 Statement::List(left, open, items) => {
                     let open = format!("{left} = {open}{{");
                     let joined = items.join(", ");
-                    if out.has_room([&open, &joined, "};"]) {
-                        out.line([&open, &joined, "};"].concat());
-                    } else {
+                    out.line_or([&open, &joined, "};"], |out| {
                         out.enclose(&open, "};", |out| out.fill(items, ","));
-                    }
+                    });
                 }
             }
         }
@@ -173,10 +171,7 @@ impl<'c, 'm> Assignments<'c, 'm> {
 
 /// Writes `left = right;`, on two lines if it exceeds one.
 pub fn assign(out: &mut Source, left: &str, right: &str) {
-    if out.has_room([left, " = ", right, ";"]) {
-        out.line(format!("{left} = {right};"));
-    } else {
-        out.line(format!("{left} ="));
-        out.line(format!("    {right};"));
-    }
+    out.line_or([left, " = ", right, ";"], |out| {
+        out.line(format!("{left} =\n    {right};"));
+    });
 }

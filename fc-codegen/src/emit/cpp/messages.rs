@@ -140,11 +140,9 @@ fn structure(
             let stem = name.trim_end_matches('_');
             let open = format!("[[nodiscard]] {ty} {stem}_or_default() const {{");
             let body = format!("return {name}.value_or({value});");
-            if out.has_room([&open, " ", &body, " }"]) {
-                out.line(format!("{open} {body} }}"));
-            } else {
+            out.line_or([&open, " ", &body, " }"], |out| {
                 out.enclose(&open, "}", |out| out.line(&body));
-            }
+            });
         }
     });
     out.blank();
@@ -281,13 +279,10 @@ fn text_enum(out: &mut Source, name: &str, each: impl FnOnce(&mut Source)) {
             };
             let open = format!("friend bool operator{operator}(");
             let whole = format!("{open}{}, {}) {{ {equal} }}", parameters[0], parameters[1]);
-            if out.has_room([&whole]) {
-                out.line(whole);
-            } else {
+            out.line_or([&whole], |out| {
                 out.parameters(&open, &parameters, ") {");
-                out.line(format!("  {equal}"));
-                out.line("}");
-            }
+                out.line(format!("  {equal}\n}}"));
+            });
         }
     });
     out.blank();

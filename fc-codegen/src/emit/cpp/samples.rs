@@ -80,12 +80,9 @@ impl<'p, 'm> Writer<'p, 'm> {
                 out.block(head, |out| {
                     let open = "if (const auto* known =";
                     let get = format!("std::get_if<{space}{name}>(&*report)) {{");
-                    if out.has_room([open, " ", &get]) {
-                        out.line(format!("{open} {get}"));
-                    } else {
-                        out.line(open);
-                        out.line(format!("        {get}"));
-                    }
+                    out.line_or([open, " ", &get], |out| {
+                        out.line(format!("{open}\n        {get}"));
+                    });
                     out.enclose("", "}", |out| {
                         out.line("std::cout << *known << '\\n';");
                         out.line(meanwhile.received);
@@ -301,11 +298,9 @@ fn main(out: &mut Source, space: &str, run: &SampleRun<'_, '_>) {
             format!("if (!{call})"),
             format!("return failed({});", literal(name)),
         );
-        if out.has_room([&asks, " ", &fails]) {
-            out.line(format!("{asks} {fails}"));
-        } else {
-            out.block(asks, |out| out.line(fails));
-        }
+        out.line_or([&asks, " ", &fails], |out| {
+            out.block(&asks, |out| out.line(&fails));
+        });
     };
     out.template("sample_failed", &[]);
     out.blank();

@@ -186,11 +186,9 @@ fn followed(
 /// Writes a function with an expression body. The function has several lines if it exceeds one.
 fn function(out: &mut Source, open: &str, parameters: &[String], close: &str, body: &str) {
     let joined = parameters.join(", ");
-    if out.has_room([open, &joined, close, " ", body]) {
-        out.line([open, &joined, close, " ", body].concat());
-    } else {
+    out.line_or([open, &joined, close, " ", body], |out| {
         signature(out, open, parameters, close, |out| out.line(body));
-    }
+    });
 }
 
 /// Writes a function with its body below. Each parameter has a line if all exceed one.

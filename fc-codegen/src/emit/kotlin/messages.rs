@@ -131,11 +131,9 @@ fn builder(out: &mut Source, context: &Context<'_>, name: &str, fields: &[Spelle
             out.documented(&Docs::linked(format!("[{name}.{property}]")));
             let head = format!("public fun {property}({property}: {ty}{mark}): Builder =");
             let put = format!("put({constant}, {property})");
-            if out.has_room([&head, " ", &put]) {
-                out.line(format!("{head} {put}"));
-            } else {
-                out.enclose(&head, "", |out| out.line(put));
-            }
+            out.line_or([&head, " ", &put], |out| {
+                out.enclose(&head, "", |out| out.line(&put));
+            });
         }
     });
 }

@@ -40,11 +40,9 @@ pub fn part(out: &mut Source, context: &Context<'_>, group: &Group<'_, '_>) {
             let (method, ty) = (call.method, type_of(call));
             let head = format!("public val {method}: {ty}");
             let getter = format!("get() = Companion.{method}");
-            if out.has_room([&head, " ", &getter]) {
-                out.line([&head, " ", &getter].concat());
-            } else {
-                out.enclose(&head, "", |out| out.line(getter));
-            }
+            out.line_or([&head, " ", &getter], |out| {
+                out.enclose(&head, "", |out| out.line(&getter));
+            });
         }
         out.template("constants", &[]);
         out.block("public companion object", |out| {

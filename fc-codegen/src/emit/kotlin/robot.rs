@@ -122,11 +122,9 @@ fn served(out: &mut Source, group: &Group<'_, '_>) {
         for Call { method, .. } in &group.commands {
             let open = format!("on(Operations.{method}) {{ context, request ->");
             let body = format!("robot.{method}(context, request)");
-            if out.has_room([&open, " ", &body, " }"]) {
-                out.line([&open, " ", &body, " }"].concat());
-            } else {
-                out.enclose(&open, "}", |out| out.line(body));
-            }
+            out.line_or([&open, " ", &body, " }"], |out| {
+                out.enclose(&open, "}", |out| out.line(&body));
+            });
         }
     });
 }

@@ -205,11 +205,9 @@ impl Code {
     /// Writes a union after `before`, in parentheses if it exceeds a line.
     pub fn write_in_parentheses(&self, out: &mut Source, before: &str) {
         let flat = self.flat();
-        if out.has_room([before, &flat]) {
-            out.line([before, &flat].concat());
-        } else {
+        out.line_or([before, &flat], |out| {
             out.enclose(&[before, "("].concat(), ")", |out| self.write(out, "", ""));
-        }
+        });
     }
 }
 

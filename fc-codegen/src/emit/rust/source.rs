@@ -112,8 +112,7 @@ impl Source {
         let joined = join(items);
         // rustfmt keeps two columns free here.
         if self.has_room([open, &joined, close, "  "]) {
-            self.line([open, &joined, close].concat());
-            return;
+            return self.line([open, &joined, close].concat());
         }
         self.enclose(open, close, |out| out.fill(items, ","));
     }

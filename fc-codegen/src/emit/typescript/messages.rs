@@ -173,13 +173,12 @@ fn enumeration(
 pub fn union(out: &mut Source, name: &str, alternatives: &[String]) {
     let head = format!("export type {name} =");
     let flat = alternatives.join(" | ");
-    if out.has_room([&head, " ", &flat]) {
-        return out.line([&head, " ", &flat].concat());
-    }
-    out.enclose(&head, "", |out| {
-        for alternative in alternatives {
-            out.line(["| ", alternative].concat());
-        }
+    out.line_or([&head, " ", &flat], |out| {
+        out.enclose(&head, "", |out| {
+            for alternative in alternatives {
+                out.line(["| ", alternative].concat());
+            }
+        });
     });
 }
 
