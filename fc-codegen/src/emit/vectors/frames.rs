@@ -148,11 +148,8 @@ impl<'a, 'm> Frames<'a, 'm> {
         push("frame_too_long", "largest_length", &total(u32::MAX.into()));
         push("truncated", "truncated_head", until(1));
         let header = self.layout.header_len();
-        push(
-            "truncated",
-            "truncated_header",
-            until(header.saturating_sub(1)),
-        );
+        let most_of_header = until(header.saturating_sub(1));
+        push("truncated", "truncated_header", most_of_header);
         push("truncated", "truncated_data", until(good.len() - 1));
         push("truncated", "length_past_the_end", &total(end + 1));
     }
@@ -205,21 +202,12 @@ impl<'a, 'm> Frames<'a, 'm> {
         let len = self.request.len();
         let mismatch = "plain_length_mismatch";
         let gzipped = |data: &[u8], length| self.gzipped(data, length);
-        push(
-            mismatch,
-            "gzip_plain_length_short",
-            &gzipped(&packed, len.saturating_sub(1)),
-        );
-        push(
-            mismatch,
-            "gzip_plain_length_long",
-            &gzipped(&packed, len + 1),
-        );
-        push(
-            "bad_gzip",
-            "gzip_of_plain_text",
-            &gzipped(&self.request, len),
-        );
+        let short = gzipped(&packed, len.saturating_sub(1));
+        push(mismatch, "gzip_plain_length_short", &short);
+        let long = gzipped(&packed, len + 1);
+        push(mismatch, "gzip_plain_length_long", &long);
+        let plain = gzipped(&self.request, len);
+        push("bad_gzip", "gzip_of_plain_text", &plain);
         let cut_off = packed.get(..packed.len() / 2).unwrap_or_default();
         push("bad_gzip", "gzip_cut_off", &gzipped(cut_off, len));
         let checksum = flipped(&packed, 8);
