@@ -11,6 +11,7 @@ use fc_spec::model::{
     Answer, Direction, Field, Model, Operation, Subject, TypeDef, TypeRef, TypeShape,
 };
 use std::collections::HashMap;
+use std::hash::Hash;
 
 /// The model and its indices.
 pub(crate) struct Book<'m> {
@@ -36,21 +37,14 @@ impl<'m> Book<'m> {
     /// Indexes a model. `tabs` has the samples of operations.
     pub(crate) fn new(model: &'m Model, tabs: TabsOf) -> Self {
         let samples = Samples::new(model);
-        let mut answers: HashMap<&Subject, Vec<&Answer>> = HashMap::new();
-        for answer in &model.answers {
-            answers.entry(&answer.subject).or_default().push(answer);
-        }
-        let mut bodies: HashMap<&str, Vec<&TypeDef>> = HashMap::new();
-        for ty in &model.types {
-            if let Some(body) = &ty.body_of {
-                bodies.entry(&body.operation).or_default().push(ty);
-            }
-        }
-        let operations = model
-            .operations
-            .iter()
-            .map(|operation| (operation.name.as_str(), operation));
-        let users = users(model);
+        let answers = model.answers.iter().map(|it| (&it.subject, it));
+        let bodies = model.types.iter();
+        let bodies = bodies.filter_map(|ty| Some((ty.body_of.as_ref()?.operation.as_str(), ty)));
+        let operations = model.operations.iter().map(|it| (it.name.as_str(), it));
+        let users = model.operations.iter().flat_map(|operation| {
+            let types = types_of(model, operation).into_iter();
+            types.map(move |ty| (ty.name.as_str(), operation))
+        });
         let mut listed = HashMap::new();
         for operation in &model.operations {
             for direction in Direction::ALL {
@@ -67,10 +61,10 @@ impl<'m> Book<'m> {
             reflector: Reflector::new(model),
             tabs,
             operations: operations.collect(),
-            answers,
-            bodies,
+            answers: gathered(answers),
+            bodies: gathered(bodies),
             listed,
-            users,
+            users: gathered(users),
             terms: Lang::ALL.map(|lang| Terms::new(&model.glossary, lang)),
         }
     }
@@ -245,14 +239,13 @@ impl<'m> Book<'m> {
     }
 }
 
-fn users(model: &Model) -> HashMap<&str, Vec<&Operation>> {
-    let mut users: HashMap<&str, Vec<&Operation>> = HashMap::new();
-    for operation in &model.operations {
-        for ty in types_of(model, operation) {
-            users.entry(&ty.name).or_default().push(operation);
-        }
+/// Returns the values of each key.
+fn gathered<K: Eq + Hash, V>(pairs: impl Iterator<Item = (K, V)>) -> HashMap<K, Vec<V>> {
+    let mut gathered: HashMap<K, Vec<V>> = HashMap::new();
+    for (key, value) in pairs {
+        gathered.entry(key).or_default().push(value);
     }
-    users
+    gathered
 }
 
 /// Returns all types in the bodies of an operation, outer before inner.
@@ -275,21 +268,10 @@ fn list<'m>(
     if ty.body_of.is_none() || listed.contains_key(ty.name.as_str()) {
         return;
     }
-    let inner: Vec<(&TypeRef, Anchor)> = match &ty.shape {
-        TypeShape::Struct(shape) => {
-            let fields = shape.fields.iter();
-            fields
-                .filter_map(|field| Some((field.ty.innermost()?, anchor.step(&field.wire))))
-                .collect()
-        }
-        TypeShape::OneOf(choice) => {
-            let variants = choice.variants.iter();
-            variants
-                .map(|variant| (&*variant.ty, anchor.step(&variant.name)))
-                .collect()
-        }
-        TypeShape::Enum(_) => Vec::new(),
-    };
+    let inner = inside(ty).into_iter();
+    let inner: Vec<_> = inner
+        .map(|(named, key)| (named, anchor.step(key)))
+        .collect();
     listed.insert(&ty.name, (operation, anchor));
     for (named, anchor) in inner {
         list(model, operation, model.types.get(named), anchor, listed);
@@ -303,17 +285,23 @@ fn add_types_in<'m>(model: &'m Model, named: &TypeRef, found: &mut Vec<&'m TypeD
         return;
     }
     found.push(ty);
+    for (named, _) in inside(ty) {
+        add_types_in(model, named, found);
+    }
+}
+
+/// Returns the named types in a type, each with the key of its field or the name of its variant.
+fn inside(ty: &TypeDef) -> Vec<(&TypeRef, &str)> {
     match &ty.shape {
         TypeShape::Struct(shape) => {
-            for named in shape.fields.iter().filter_map(|field| field.ty.innermost()) {
-                add_types_in(model, named, found);
-            }
+            let fields = shape.fields.iter();
+            let named = fields.filter_map(|it| Some((it.ty.innermost()?, it.wire.as_str())));
+            named.collect()
         }
         TypeShape::OneOf(choice) => {
-            for variant in &choice.variants {
-                add_types_in(model, &variant.ty, found);
-            }
+            let variants = choice.variants.iter();
+            variants.map(|it| (&*it.ty, it.name.as_str())).collect()
         }
-        TypeShape::Enum(_) => {}
+        TypeShape::Enum(_) => Vec::new(),
     }
 }
