@@ -44,7 +44,7 @@ pub fn next_values<'v, 'm>(
 pub fn state<'m>(
     context: &'m Context<'_>,
     report: &'m Operation,
-) -> Option<(&'m KeyPath, &'m TypeRef)> {
+) -> Option<(&'m KeyPath, &'m TypeRef, &'m EnumType)> {
     let Exchange::Report {
         state: Some(keys),
         messages,
@@ -53,8 +53,8 @@ pub fn state<'m>(
     else {
         return None;
     };
-    let (ty, _) = context.model().enum_at(&messages.request.ty, keys)?;
-    Some((keys, ty))
+    let (ty, shape) = context.model().enum_at(&messages.request.ty, keys)?;
+    Some((keys, ty, shape))
 }
 
 /// Adds the paragraphs about following a command.
@@ -67,22 +67,13 @@ pub fn docs(docs: &mut Docs<'_>, context: &Context<'_>, command: &Operation) {
                 "`.follow()` returns the response, and then each {ty} that the command sets off."
             ),
         ]);
-        ending(docs, context, set_off, report, messages);
+        ending(docs, context, set_off, report);
     }
 }
 
 /// Adds the paragraphs about the end of following, and about the reports that arrive.
-pub fn ending(
-    docs: &mut Docs<'_>,
-    context: &Context<'_>,
-    set_off: &SetOff,
-    report: &Operation,
-    messages: &Messages,
-) {
-    let state = state(context, report).and_then(|(keys, _)| {
-        let (_, shape) = context.model().enum_at(&messages.request.ty, keys)?;
-        Some((keys.join("."), shape))
-    });
+pub fn ending(docs: &mut Docs<'_>, context: &Context<'_>, set_off: &SetOff, report: &Operation) {
+    let state = state(context, report).map(|(keys, _, shape)| (keys.join("."), shape));
     let ends = state.as_ref().is_some_and(|(_, shape)| {
         let mut values = shape.values.iter();
         values.any(|value| value.is_final)
@@ -90,13 +81,10 @@ pub fn ending(
     let Exchange::Report { failures, .. } = &report.exchange else {
         return;
     };
-    let mut failing: Vec<String> = failures.iter().map(|keys| keys.join(".")).collect();
-    if let Some((keys, shape)) = &state
-        && shape.has_failures()
-    {
-        failing.insert(0, keys.clone());
-    }
-    let failing: Vec<String> = failing.iter().map(|keys| format!("`{keys}`")).collect();
+    let own = state.iter().filter(|(_, shape)| shape.has_failures());
+    let own = own.map(|(keys, _)| keys.clone());
+    let failing = own.chain(failures.iter().map(|keys| keys.join(".")));
+    let failing: Vec<String> = failing.map(|keys| format!("`{keys}`")).collect();
     let (zh, en) = match (state.filter(|_| ends), failing.is_empty()) {
         (Some((keys, _)), true) => (
             format!("`{keys}` 到达终态时结束。"),

@@ -3,7 +3,7 @@
 use super::fields::enumerators;
 use super::types::namespace;
 use crate::package::context::{Context, Step};
-use crate::package::items::{Call, Item, Shape, Spelled};
+use crate::package::items::{Call, Item, Spelled};
 use crate::package::joined::Joined;
 use crate::package::process::{has_states, next_values, set_off, state};
 use crate::package::source::Source;
@@ -210,13 +210,8 @@ fn stage(out: &mut Source, context: &Context<'_>, call: &Call<'_>) {
     let name = &call.request.ty.name;
     let body = call.operation.messages().map(|it| &it.request.ty);
     let way = body.and_then(|body| {
-        let (keys, ty) = state(context, call.operation)?;
-        let item = context.package.item(ty);
-        let Shape::Enum(shape, _) = &item.shape else {
-            return None;
-        };
-        let says = has_states(shape);
-        Some((at(context, "report", body, keys), says))
+        let (keys, _, shape) = state(context, call.operation)?;
+        Some((at(context, "report", body, keys), has_states(shape)))
     });
     let mut failures = Vec::new();
     if let (Exchange::Report { failures: keys, .. }, Some(body)) = (&call.operation.exchange, body)

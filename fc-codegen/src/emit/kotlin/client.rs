@@ -130,7 +130,7 @@ fn followed(
             format!("[{method}]：先返回响应，再逐个返回它引起的 [{reported_type}]。"),
             format!("[{method}]: returns the response, and then each [{reported_type}] that the command sets off."),
         ]);
-        ending(&mut docs, context, set_off, report, messages);
+        ending(&mut docs, context, set_off, report);
         docs.raw("@throws fc.runtime.CallError if the response is not a success");
         let ties = set_off.tied.iter().map(|tie| {
             let side = tie.side.name();

@@ -191,12 +191,12 @@ fn report_value(out: &mut Source, context: &Context<'_>, report: &Call<'_>) {
     ];
     made.extend(cadence.as_ref().map(sent_at));
     let body = &messages.request.ty;
-    let state = state(context, operation).filter(|(keys, _)| is_state(context, body, keys));
+    let state = state(context, operation).filter(|(_, _, shape)| has_states(shape));
     // An enum without states has no failures either.
     let failing = failures.iter().filter(|keys| is_state(context, body, keys));
     let failing = failing.map(|keys| way(context, body, keys, "report"));
     let mut failing: Vec<String> = failing.collect();
-    if let Some((keys, _)) = state {
+    if let Some((keys, ..)) = state {
         let state = way(context, body, keys, "report");
         made.push(format!("    .state {{ report -> {state} }}"));
         if !failing.is_empty() {

@@ -138,8 +138,8 @@ fn follow_docs<'c>(
         format!("Returns the response, and then each `{followed}` that the command sets off."),
     ]);
     let mut all = process::set_off(context, command);
-    if let Some((set_off, _, messages)) = all.find(|(_, it, _)| it.name == report.name) {
-        process::ending(&mut docs, context, set_off, report, messages);
+    if let Some((set_off, ..)) = all.find(|(_, it, _)| it.name == report.name) {
+        process::ending(&mut docs, context, set_off, report);
     }
     docs.paragraph(context.links(&command.location, &page_of(command)));
     docs

@@ -16,7 +16,7 @@ use fc_spec::model::{EnumRepr, EnumType, EnumValue, StateOrder, TypeDef};
 pub fn is_state(context: &Context<'_>, shape: &EnumType, ty: &TypeDef) -> bool {
     has_states(shape)
         || context.model().operations.iter().any(|report| {
-            process::state(context, report).is_some_and(|(_, state)| state.name() == ty.name)
+            process::state(context, report).is_some_and(|(_, state, _)| state.name() == ty.name)
         })
 }
 

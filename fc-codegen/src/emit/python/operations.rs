@@ -120,7 +120,7 @@ fn value(context: &Context<'_>, operation: &Operation) -> Code {
                 set("cadence", self::cadence(cadence));
             }
             let body = &messages.request.ty;
-            if let Some((keys, _)) = state(context, operation) {
+            if let Some((keys, ..)) = state(context, operation) {
                 set("state", way(context, body, keys));
             }
             if !failures.is_empty() {

@@ -9,7 +9,7 @@ use fc_spec::model::{Exchange, Operation, StructRef, TypeRef};
 pub fn types<'m>(context: &'m Context<'_>, operation: &'m Operation) -> Vec<&'m TypeRef> {
     let reports = set_off(context, operation);
     let mut types: Vec<&TypeRef> = reports.map(|(_, _, it)| &*it.request.ty).collect();
-    types.extend(state(context, operation).map(|(_, ty)| ty));
+    types.extend(state(context, operation).map(|(_, ty, _)| ty));
     types
 }
 
@@ -40,7 +40,7 @@ pub fn stage(context: &Context<'_>, report: &Operation) -> Vec<String> {
     };
     let body = &messages.request.ty;
     let mut items = Vec::new();
-    items.extend(state(context, report).map(|(keys, ty)| {
+    items.extend(state(context, report).map(|(keys, ty, _)| {
         let steps = steps(context, body, keys);
         format!("state({steps}: {})", context.name_of(ty))
     }));
