@@ -70,17 +70,7 @@ fn types(out: &mut Source, context: &Context<'_>, header: &Header<'_, '_>) {
                 process::define_call(out, context, &call);
             }
         }
-        for item in &header.items {
-            let template = match &item.shape {
-                Shape::Record(..) => "Codec",
-                Shape::Enum(..) => "EnumCodec",
-                Shape::Choice(..) => continue,
-            };
-            out.line(format!(
-                "template struct {template}<{space}::{}>;",
-                item.ty.name
-            ));
-        }
+        header.codecs(out, space, "template");
     });
 }
 

@@ -84,17 +84,7 @@ fn types(
             out.blank();
             process::declare_set_off(out, context, call);
         }
-        for item in &header.items {
-            let template = match &item.shape {
-                Shape::Record(..) => "Codec",
-                Shape::Enum(..) => "EnumCodec",
-                Shape::Choice(..) => continue,
-            };
-            out.line(format!(
-                "extern template struct {template}<{space}::{}>;",
-                item.ty.name
-            ));
-        }
+        header.codecs(out, space, "extern template");
     });
 }
 

@@ -2,9 +2,10 @@
 
 use crate::package::context::Context;
 use crate::package::cycles::{Needs, first_of_circle, reached};
-use crate::package::items::Item;
+use crate::package::items::{Item, Shape};
 use crate::package::language::{CPP, Role};
 use crate::package::process::set_off;
+use crate::package::source::Source;
 use crate::package::types::{in_lists, parts};
 use fc_spec::model::{Accepted, Direction, Field, Type, TypeRef};
 use std::borrow::Cow;
@@ -61,6 +62,7 @@ pub fn integer_type(name: &str) -> String {
 }
 
 /// A header: a group's types and operations, or those of several groups that need each other.
+#[derive(Default)]
 pub struct Header<'p, 'm> {
     /// The name of the header.
     pub id: &'p str,
@@ -68,6 +70,21 @@ pub struct Header<'p, 'm> {
     pub items: Vec<&'p Item<'m>>,
     /// The ids of the headers that it includes.
     pub needs: BTreeSet<&'p str>,
+}
+
+impl Header<'_, '_> {
+    /// Instantiates the codecs of the types, with `word` before each.
+    pub fn codecs(&self, out: &mut Source, space: &str, word: &str) {
+        for item in &self.items {
+            let template = match &item.shape {
+                Shape::Record(..) => "Codec",
+                Shape::Enum(..) => "EnumCodec",
+                Shape::Choice(..) => continue,
+            };
+            let name = &item.ty.name;
+            out.line(format!("{word} struct {template}<{space}::{name}>;"));
+        }
+    }
 }
 
 /// Returns the headers with their types, and the header of each group.
@@ -83,39 +100,24 @@ pub fn headers<'p, 'm>(
     let needs = reached(&needs.collect::<Needs<'_>>());
     let homes = needs.keys().map(|id| (*id, first_of_circle(&needs, id)));
     let mut homes: BTreeMap<&str, &str> = homes.collect();
-    let mut headers: Vec<Header<'p, 'm>> = Vec::new();
+    let mut headers: BTreeMap<&str, Header<'p, 'm>> = BTreeMap::new();
     for module in &package.modules {
         let home = homes.get(module.id.as_str()).copied().unwrap_or(&module.id);
         let needed = needs.get(module.id.as_str()).into_iter().flatten();
-        let needed = needed
-            .filter_map(|id| homes.get(id))
-            .copied()
-            .filter(|id| *id != home);
-        let needed: BTreeSet<&str> = needed.collect();
-        match headers.iter_mut().find(|header| header.id == home) {
-            Some(header) => {
-                header.items.extend(&module.items);
-                header.needs.extend(needed);
-            }
-            None => headers.push(Header {
-                id: home,
-                items: module.items.iter().collect(),
-                needs: needed,
-            }),
-        }
+        let needed = needed.filter_map(|id| homes.get(id)).copied();
+        let header = headers.entry(home).or_default();
+        header.items.extend(&module.items);
+        header.needs.extend(needed.filter(|id| *id != home));
     }
     // A group that has only streams has no types, but needs a header.
     for operation in &context.model().operations {
         let id = operation.group.as_str();
-        if homes
-            .insert(id, homes.get(id).copied().unwrap_or(id))
-            .is_none()
-        {
-            let (items, needs) = (Vec::new(), BTreeSet::new());
-            headers.push(Header { id, items, needs });
-        }
+        headers.entry(homes.entry(id).or_insert(id)).or_default();
     }
-    headers.sort_by_key(|header| header.id);
+    let headers = headers.into_iter();
+    let mut headers: Vec<_> = headers
+        .map(|(id, header)| Header { id, ..header })
+        .collect();
     for header in &mut headers {
         let mut ordered = Vec::new();
         for item in header.items.clone() {
