@@ -3,11 +3,11 @@
 use super::groups::{self, NamedGroup};
 use super::layout::{float, integer, literal, raw};
 use super::process;
+use super::tables::spelled_in;
 use super::types::{Header, namespace};
 use crate::package::conditions::Asked;
 use crate::package::context::Context;
-use crate::package::expr::Expr;
-use crate::package::items::{Item, Package, Shape, Spelled};
+use crate::package::items::{Item, Shape, Spelled};
 use crate::package::joined::Joined;
 use crate::package::marks::FieldMarks;
 use crate::package::process::has_states;
@@ -76,7 +76,6 @@ fn types(out: &mut Source, context: &Context<'_>, header: &Header<'_, '_>) {
 
 fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Spelled<'_, Field>]) {
     let space = &namespace(context);
-    let package = &context.package;
     let name = &item.ty.name;
     let marks = fields
         .iter()
@@ -109,9 +108,9 @@ fn record(out: &mut Source, context: &Context<'_>, item: &Item<'_>, fields: &[Sp
                 out.line(format!("visit({of}, message.{});", field.name));
             }
         });
-        let asked = marks.iter().filter_map(|(field, marks)| {
-            Some(asks(space, package, field, marks.condition.as_ref()?))
-        });
+        let asked = marks
+            .iter()
+            .filter_map(|(field, marks)| Some(asks(context, field, marks.condition.as_ref()?)));
         let asked: Vec<String> = asked.collect();
         let (visit, message) = match asked.as_slice() {
             [] => ("/*asked*/", "/*message*/"),
@@ -210,16 +209,16 @@ fn field_of(field: &Spelled<'_, Field>, marks: &FieldMarks<'_, '_>) -> String {
 }
 
 /// Returns the check of a field's condition, which depends on other fields.
-fn asks(
-    space: &str,
-    package: &Package<'_>,
-    field: &Spelled<'_, Field>,
-    condition: &Asked<'_, '_>,
-) -> String {
+fn asks(context: &Context<'_>, field: &Spelled<'_, Field>, condition: &Asked<'_, '_>) -> String {
+    let space = &format!("{}::", namespace(context));
     let holds = condition.fields.iter().map(|(other, values)| {
         let each = values.iter().map(|wire| {
-            let value = package.held(other, &Value::from(wire));
-            format!("message.{} == {}", other.name, compared(space, &value))
+            let value = context.package.held(other, &Value::from(wire));
+            format!(
+                "message.{} == {}",
+                other.name,
+                spelled_in(context, space, &value, "")
+            )
         });
         let each: Vec<String> = each.collect();
         match each.as_slice() {
@@ -239,25 +238,6 @@ fn asks(
     let said = literal(&format!("{} {}", condition.word, said.joined(" and ")));
     let (key, name) = (literal(&field.wire), &field.name);
     format!("asked.asks({key}, message.{name}, {holds}, {said});")
-}
-
-/// Returns a constant for a comparison with a field.
-fn compared(space: &str, value: &Expr<'_>) -> String {
-    match value {
-        Expr::Value(item, value) => format!("{space}::{}::{}", enumerators(item), value.name),
-        Expr::Unlisted(item, value) => match (&item.shape, &**value) {
-            (Shape::Enum(shape, _), Expr::Int(wire)) if shape.repr != EnumRepr::String => {
-                format!("static_cast<{space}::{}>({})", item.ty.name, integer(*wire))
-            }
-            (_, Expr::Text(text)) => format!("{space}::{}({})", item.ty.name, literal(text)),
-            _ => "{}".to_owned(),
-        },
-        Expr::Id(id, value) => format!("{space}::{id}({})", compared(space, value)),
-        Expr::Bool(value) => value.to_string(),
-        Expr::Int(value) => integer(*value),
-        Expr::Text(text) => literal(text),
-        _ => "{}".to_owned(),
-    }
 }
 
 /// Returns the scope of an enum's values.
