@@ -26,40 +26,29 @@ pub fn resolve(root: &Path, path: &str) -> Result<PathBuf, OutputError> {
 
 /// Returns `Ok` if a path names a file below the root on every system.
 fn check(path: &str) -> Result<(), OutputError> {
-    let bad = |why| {
-        Err(OutputError::BadPath {
-            path: path.to_owned(),
-            why,
-        })
-    };
-    if path.is_empty() {
-        return bad(text!("路径为空", "it is empty"));
-    }
-    if path.starts_with('/') {
-        return bad(text!(
+    let mut parts = path.split('/');
+    let bad_part = parts.find(|part| matches!(*part, "" | "." | ".."));
+    let why = if path.is_empty() {
+        text!("路径为空", "it is empty")
+    } else if path.starts_with('/') {
+        text!(
             "必须是相对于根目录的路径",
             "it must be relative to the root"
-        ));
-    }
-    if path.contains(['\\', ':', '\0']) {
-        return bad(text!(
+        )
+    } else if path.contains(['\\', ':', '\0']) {
+        text!(
             "不能含有 `\\`、`:` 或 NUL",
             "it must not contain `\\`, `:` or NUL"
-        ));
-    }
-    for part in path.split('/') {
-        match part {
-            "" => return bad(text!("路径中有空的一段", "it has an empty part")),
-            "." | ".." => {
-                return bad(text!(
-                    "不能含有 `.` 或 `..`",
-                    "it must not contain `.` or `..`"
-                ));
-            }
-            _ => {}
+        )
+    } else {
+        match bad_part {
+            None => return Ok(()),
+            Some("") => text!("路径中有空的一段", "it has an empty part"),
+            Some(_) => text!("不能含有 `.` 或 `..`", "it must not contain `.` or `..`"),
         }
-    }
-    Ok(())
+    };
+    let path = path.to_owned();
+    Err(OutputError::BadPath { path, why })
 }
 
 #[cfg(test)]
