@@ -123,44 +123,17 @@ fn every_type(out: &mut Source, path: &str, context: &Context<'_>) {
 }
 
 /// The types of the runtime that an app needs.
-const FOR_APPS: &[&str] = &[
-    "Backoff",
-    "CallError",
-    "CallOptions",
-    "ClientConfig",
-    "ConnectError",
-    "ConnectionState",
-    "DataConnection",
-    "Loss",
-];
+const FOR_APPS: &str = "\
+    Backoff CallError CallOptions ClientConfig ConnectError ConnectionState DataConnection Loss";
 
 /// The types of the runtime that a robot needs.
-const FOR_ROBOTS: &[&str] = &[
-    "AckOutcome",
-    "Acknowledgement",
-    "Audience",
-    "ConnectionId",
-    "Context",
-    "PushError",
-    "Server",
-    "ServerConfig",
-    "ServerHandle",
-];
+const FOR_ROBOTS: &str = "\
+    AckOutcome Acknowledgement Audience ConnectionId Context PushError Server ServerConfig \
+    ServerHandle";
 
 /// The types of the runtime that both need.
-const FOR_BOTH: &[&str] = &[
-    "BodyError",
-    "Bytes64",
-    "Command",
-    "DeclaredError",
-    "Effect",
-    "Extra",
-    "Json",
-    "Message",
-    "Protocol",
-    "Refusal",
-    "Report",
-];
+const FOR_BOTH: &str = "\
+    BodyError Bytes64 Command DeclaredError Effect Extra Json Message Protocol Refusal Report";
 
 /// Generates `prelude.rs`.
 pub fn prelude(context: &Context<'_>, krate: &str) -> String {
@@ -173,11 +146,10 @@ pub fn prelude(context: &Context<'_>, krate: &str) -> String {
         context.package.name
     ));
     // A type of the spec takes precedence over a runtime type with the same name.
-    let of_runtime = |out: &mut Source, names: &[&str]| {
+    let of_runtime = |out: &mut Source, names: &str| {
+        let names = names.split_whitespace();
         let names: Vec<&str> = names
-            .iter()
             .filter(|name| !context.package.has_type(name))
-            .copied()
             .collect();
         out.filled("pub use fc_runtime::{", &names, "};");
     };
