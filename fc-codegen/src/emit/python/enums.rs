@@ -8,7 +8,7 @@ use crate::package::facts;
 use crate::package::items::{Item, Spelled};
 use crate::package::process::{self, has_states, next_values};
 use crate::package::source::Source;
-use fc_spec::model::{EnumRepr, EnumType, EnumValue, StateOrder, TypeDef};
+use fc_spec::model::{EnumType, EnumValue, StateOrder, TypeDef};
 
 /// Returns `true` if the values of an enum are states of a process.
 ///
@@ -28,10 +28,7 @@ pub fn enumeration(
     shape: &EnumType,
     values: &[Spelled<'_, EnumValue>],
 ) {
-    let scalar = match shape.repr {
-        EnumRepr::Int(kind) => kind.name(),
-        EnumRepr::String => "string",
-    };
+    let scalar = shape.repr.name();
     let closed = if shape.closed { ", is_open=False" } else { "" };
     out.line(format!("@rt.wire_enum(\"{scalar}\"{closed})"));
     let base = if is_state(context, shape, item.ty.of) {

@@ -10,7 +10,7 @@ use crate::package::language::Case;
 use crate::package::marks::FieldMarks;
 use crate::package::types::parts;
 use crate::sample::Samples;
-use fc_spec::model::{Argument, EnumRepr, EnumType, EnumValue, Field, Scalar, Type, Value};
+use fc_spec::model::{Argument, EnumType, EnumValue, Field, Scalar, Type, Value};
 
 pub const ABOUT: [&str; 2] = [
     "消息类型的描述，运行库据此读写；编译器检查它与类型一致。",
@@ -60,7 +60,7 @@ fn schema(context: &Context<'_>, item: &Item<'_>) -> Layout {
             is("struct").with("fields", Layout::lines(schemas))
         }
         Shape::Enum(shape, values) => is("enum")
-            .with("repr", Layout::text(repr(shape.repr)))
+            .with("repr", Layout::text(shape.repr.name()))
             .with("closed", Layout::flag(shape.closed))
             .with("values", Layout::path(["messages", name]))
             .with("process", process(name, shape, values)),
@@ -71,13 +71,6 @@ fn schema(context: &Context<'_>, item: &Item<'_>) -> Layout {
         }
     };
     members.object()
-}
-
-fn repr(repr: EnumRepr) -> &'static str {
-    match repr {
-        EnumRepr::Int(kind) => kind.name(),
-        EnumRepr::String => "string",
-    }
 }
 
 /// Returns the rules for an enum's values as states, if the spec has any.
