@@ -2,24 +2,11 @@
 
 use super::desk::Desk;
 use fc_spec::model::{Available, Declared};
-use serde::Serialize;
-
-/// The limits as sentences or badges.
-#[derive(Debug, Default, Serialize)]
-pub(super) struct AvailableView {
-    /// The names of the audiences for the site's filter; empty for all audiences.
-    names: String,
-    /// The titles of the audiences.
-    audiences: Option<String>,
-    /// The titles of the lines of machines.
-    hardware: Option<String>,
-    /// `ADP 3.8 and later`.
-    releases: Vec<String>,
-}
+use minijinja::{Value, context};
 
 impl Desk<'_, '_> {
-    /// Returns `None` for an item without limits.
-    pub(super) fn available(&self, available: Option<&Available>) -> Option<AvailableView> {
+    /// Returns the limits as sentences or badges, and the names of the audiences for the site's filter.
+    pub(super) fn available(&self, available: Option<&Available>) -> Option<Value> {
         let available = available?;
         let lang = self.lang;
         let words = &self.book.model.availability;
@@ -52,11 +39,11 @@ impl Desk<'_, '_> {
                 }
             }
         });
-        Some(AvailableView {
-            names: available.audiences.join(" "),
-            audiences: joined(audiences.collect()),
-            hardware: joined(hardware.collect()),
-            releases: releases.collect(),
+        Some(context! {
+            names => available.audiences.join(" "),
+            audiences => joined(audiences.collect()),
+            hardware => joined(hardware.collect()),
+            releases => releases.collect::<Vec<_>>(),
         })
     }
 }

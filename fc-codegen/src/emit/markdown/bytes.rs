@@ -5,36 +5,15 @@ use crate::emit::json::hex_digits;
 use fc_reflect::{Frame, HeaderContent, HeaderValue, Reflector};
 use fc_spec::model::Lang;
 use fc_spec::model::{Frame as Layout, HeaderRole, Kind};
-use serde::Serialize;
+use minijinja::{Value, context};
 use std::fmt::Write as _;
 use std::ops::Range;
 
 /// The number of bytes in a line of a dump.
 const PER_LINE: usize = 16;
 
-#[derive(Debug, Serialize)]
-pub(super) struct FrameView {
-    /// Lines of offset, bytes and field name for the header, and of offset, bytes and ASCII for the data.
-    dump: String,
-    parts: Vec<PartView>,
-    length: usize,
-}
-
-/// A header field of a real frame, or its data.
-#[derive(Debug, Serialize)]
-struct PartView {
-    /// `0–1`.
-    offset: String,
-    /// Hexadecimal; empty for data.
-    bytes: String,
-    name: String,
-    /// The value, read as the type of the field.
-    value: Option<String>,
-    text: String,
-}
-
 /// Returns the view of a frame, or `None` if the limits of the spec do not allow the frame.
-pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) -> Option<FrameView> {
+pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) -> Option<Value> {
     let layout = &reflector.model().frame;
     let frame = reflector.frame(bytes).ok()?;
     let mut dump = String::new();
@@ -50,12 +29,12 @@ pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) ->
             };
             dump_line(&mut dump, start + index * PER_LINE, line, &name);
         }
-        parts.push(PartView {
-            offset: span(start, end),
-            bytes: spaced(bytes),
-            name: header.field.wire.clone(),
-            value: value(layout, header, &frame, lang),
-            text: lang.text(&header.field.text).to_owned(),
+        parts.push(context! {
+            offset => span(start, end),
+            bytes => spaced(bytes),
+            name => &header.field.wire,
+            value => value(layout, header, &frame, lang),
+            text => lang.text(&header.field.text),
         });
     }
     let Range { start, end } = frame.packed;
@@ -64,22 +43,16 @@ pub(super) fn frame_view(reflector: &Reflector<'_>, bytes: &[u8], lang: Lang) ->
         dump_line(&mut dump, start + index * PER_LINE, line, &ascii(line));
     }
     if !data.is_empty() {
-        parts.push(PartView {
-            offset: span(start, end),
-            bytes: String::new(),
-            name: lang.pick("数据", "data").to_owned(),
-            value: Some(lang.pick(
-                format!("{} 字节", data.len()),
-                format!("{} bytes", data.len()),
-            )),
-            text: lang.text(&layout.data).to_owned(),
+        let length = data.len();
+        parts.push(context! {
+            offset => span(start, end),
+            bytes => "",
+            name => lang.pick("数据", "data"),
+            value => lang.pick(format!("{length} 字节"), format!("{length} bytes")),
+            text => lang.text(&layout.data),
         });
     }
-    Some(FrameView {
-        dump,
-        parts,
-        length: bytes.len(),
-    })
+    Some(context! { dump, parts, length => bytes.len() })
 }
 
 /// Returns a ruler of the header. Every byte is under its offset, and every field is in brackets.

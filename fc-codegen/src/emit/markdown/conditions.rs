@@ -3,38 +3,7 @@
 use super::desk::Desk;
 use super::rows::{Place, scalar};
 use fc_spec::model::{Asked, Condition, Field, Scalar, StructType, TypeShape};
-use serde::Serialize;
-
-/// A condition: fields and values with links to their descriptions.
-#[derive(Debug, Serialize)]
-pub(super) struct ConditionView {
-    /// `true` if the field is present when the condition does not hold.
-    is_unless: bool,
-    /// `true` if the condition decides the presence of the field, and not its validity.
-    is_presence: bool,
-    asked: Vec<AskedView>,
-}
-
-#[derive(Debug, Serialize)]
-struct AskedView {
-    key: String,
-    href: String,
-    any: Vec<ValueView>,
-}
-
-#[derive(Debug, Serialize)]
-struct ValueView {
-    /// JSON.
-    wire: String,
-    /// The name of an enum value, and the place of the enum.
-    known: Option<KnownValue>,
-}
-
-#[derive(Debug, Serialize)]
-struct KnownValue {
-    name: String,
-    href: String,
-}
+use minijinja::{Value, context};
 
 impl<'m> Desk<'_, 'm> {
     /// Returns the condition of a field of the struct that is listed at `place`.
@@ -43,38 +12,43 @@ impl<'m> Desk<'_, 'm> {
         shape: &'m StructType,
         field: &Field,
         place: &Place,
-    ) -> Option<ConditionView> {
+    ) -> Option<Value> {
         let condition = field.details().condition.as_ref()?;
         let asked = condition.asked().iter();
-        Some(ConditionView {
-            is_unless: matches!(condition, Condition::Unless(_)),
-            is_presence: field.optional,
-            asked: asked.map(|asked| self.asked(shape, asked, place)).collect(),
+        let asked: Vec<_> = asked.map(|asked| self.asked(shape, asked, place)).collect();
+        Some(context! {
+            is_unless => matches!(condition, Condition::Unless(_)),
+            // The condition decides the presence of an optional field, and the validity of another one.
+            is_presence => field.optional,
+            asked,
         })
     }
 
-    fn asked(&self, shape: &'m StructType, asked: &Asked, place: &Place) -> AskedView {
+    fn asked(&self, shape: &'m StructType, asked: &Asked, place: &Place) -> Value {
         let beside = shape.field(&asked.wire);
-        let value = |wire: &Scalar| ValueView {
-            wire: scalar(wire),
-            known: beside.and_then(|field| self.known(field, wire)),
+        let value = |wire: &Scalar| {
+            context! {
+                wire => scalar(wire),
+                known => beside.and_then(|field| self.known(field, wire)),
+            }
         };
-        AskedView {
-            key: asked.wire.clone(),
-            href: self.link(self.page, place.field(&asked.wire).anchor()),
-            any: asked.values.iter().map(value).collect(),
+        context! {
+            key => &asked.wire,
+            href => self.link(self.page, place.field(&asked.wire).anchor()),
+            any => asked.values.iter().map(value).collect::<Vec<_>>(),
         }
     }
 
-    fn known(&self, field: &'m Field, wire: &Scalar) -> Option<KnownValue> {
+    /// Returns the name of an enum value, and the place of the enum.
+    fn known(&self, field: &'m Field, wire: &Scalar) -> Option<Value> {
         let ty = self.book.model.types.get(field.ty.innermost()?);
         let TypeShape::Enum(shape) = &ty.shape else {
             return None;
         };
         let value = shape.values.iter().find(|value| value.wire == *wire)?;
-        Some(KnownValue {
-            name: value.name.clone(),
-            href: self.page.link(self.book.place_of_type(ty)),
+        Some(context! {
+            name => &value.name,
+            href => self.page.link(self.book.place_of_type(ty)),
         })
     }
 }

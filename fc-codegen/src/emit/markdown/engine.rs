@@ -4,9 +4,6 @@
 //! without a filter is escaped for a table cell, the strictest place, and does not count as a sentence of the spec.
 //! Printing nothing, a list or an object is an error of the template.
 
-use super::available::AvailableView;
-use super::bytes::FrameView;
-use super::enums::EnumView;
 use super::escape::{self, Place};
 use super::links::Link;
 use super::places::{Kept, Reference};
@@ -29,15 +26,7 @@ macro_rules! shown {
     };
 }
 
-shown!(
-    AvailableView,
-    DeprecationNote,
-    EnumView,
-    FrameView,
-    Kept,
-    Link,
-    Reference
-);
+shown!(DeprecationNote, Kept, Link, Reference);
 
 macro_rules! templates {
     ($($name:literal)*) => {

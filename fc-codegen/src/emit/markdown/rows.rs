@@ -1,7 +1,5 @@
 //! Bodies as rows of a table. Every field has its own row, named by its path.
 
-use super::available::AvailableView;
-use super::conditions::ConditionView;
 use super::desk::Desk;
 use super::links::{Anchor, Link, Page};
 use super::places::{Kept, Reference};
@@ -56,8 +54,8 @@ struct More {
     code_name: Option<String>,
     conflicts: Vec<Link>,
     since: Option<String>,
-    condition: Option<ConditionView>,
-    available: Option<AvailableView>,
+    condition: Option<minijinja::Value>,
+    available: Option<minijinja::Value>,
     /// The entity that its value identifies.
     refers: Option<Reference>,
     given: Option<Reference>,
