@@ -7,7 +7,6 @@
 use super::escape::{self, Place};
 use super::links::Link;
 use super::places::{Kept, Reference};
-use super::rows::DeprecationNote;
 use super::terms::marked;
 use fc_spec::model::Lang;
 use minijinja::syntax::SyntaxConfig;
@@ -26,7 +25,7 @@ macro_rules! shown {
     };
 }
 
-shown!(DeprecationNote, Kept, Link, Reference);
+shown!(Kept, Link, Reference);
 
 macro_rules! templates {
     ($($name:literal)*) => {

@@ -6,8 +6,9 @@ use super::places::{Kept, Reference};
 use super::words::{self, Word as _};
 use fc_spec::model::{
     Deprecation, Direction, EnvelopeField, Example, Field, OneOf, Scalar, StructType, Type,
-    TypeDef, TypeRef, TypeShape, Value,
+    TypeDef, TypeRef, TypeShape, Value as Json,
 };
+use minijinja::{Value, context};
 use serde::Serialize;
 use std::collections::HashSet;
 
@@ -22,7 +23,8 @@ pub(super) struct Row {
     depth: usize,
     /// The key, or the name of a variant.
     name: String,
-    ty: TypeCell,
+    /// The name, the address of a shared type, and the form in messages if it differs.
+    ty: Value,
     /// `required`, `optional`, `conditional`; `choice` for a variant of a one-of.
     presence: &'static str,
     unit: Option<String>,
@@ -39,7 +41,7 @@ pub(super) struct Row {
 /// Properties that few fields have. A separate box keeps the other rows small.
 #[derive(Debug, Default, Serialize)]
 struct More {
-    length: Option<Length>,
+    length: Option<Value>,
     pattern: Option<String>,
     /// The allowed values of its enum as JSON; empty if all are allowed.
     only: Vec<String>,
@@ -49,43 +51,17 @@ struct More {
     quirks: Vec<&'static str>,
     also: Vec<String>,
     sensitive: bool,
-    deprecated: Option<DeprecationNote>,
+    deprecated: Option<Value>,
     /// The name in code, if it does not follow from the wire key.
     code_name: Option<String>,
     conflicts: Vec<Link>,
     since: Option<String>,
-    condition: Option<minijinja::Value>,
-    available: Option<minijinja::Value>,
+    condition: Option<Value>,
+    available: Option<Value>,
     /// The entity that its value identifies.
     refers: Option<Reference>,
     given: Option<Reference>,
     kept: Option<Kept>,
-}
-
-#[derive(Debug, Serialize)]
-struct TypeCell {
-    name: String,
-    href: Option<String>,
-    /// The form in messages, if it differs from the type.
-    sent: Option<&'static str>,
-}
-
-/// A length. The type decides what it counts.
-#[derive(Debug, Serialize)]
-struct Length {
-    /// `15` or `1 … 32`.
-    count: String,
-    /// `characters`, `bytes`, `items`.
-    of: &'static str,
-}
-
-/// The reason for a deprecation, and the replacement.
-#[derive(Debug, Serialize)]
-pub(super) struct DeprecationNote {
-    since: Option<String>,
-    sunset: Option<String>,
-    note: String,
-    replaced_by: Option<Link>,
 }
 
 impl<'m> Desk<'_, 'm> {
@@ -115,17 +91,17 @@ impl<'m> Desk<'_, 'm> {
         rows
     }
 
-    /// Returns the view of a deprecation.
-    pub(super) fn deprecation(&self, deprecated: &Deprecation) -> DeprecationNote {
+    /// Returns the reason for a deprecation, and the replacement.
+    pub(super) fn deprecation(&self, deprecated: &Deprecation) -> Value {
         let replaced_by = deprecated.replaced_by.as_deref().map(|name| {
             let operation = self.book.operation(name);
             let page = operation.map_or(Page::Index, Page::Operation);
             self.to(format!("`{name}`"), (page, Anchor::none()))
         });
-        DeprecationNote {
-            since: deprecated.since.clone(),
-            sunset: deprecated.sunset.clone(),
-            note: self.sentence(&deprecated.note),
+        context! {
+            since => &deprecated.since,
+            sunset => &deprecated.sunset,
+            note => self.sentence(&deprecated.note),
             replaced_by,
         }
     }
@@ -176,7 +152,11 @@ impl<'m> Desk<'_, 'm> {
         for variant in &choice.variants {
             let place = place.variant(&variant.name);
             let ty = Type::Named(TypeRef::clone(&variant.ty));
-            let mut row = Row::plain(&place, self.type_cell(&ty), self.lang.text(&variant.text));
+            let mut row = Row::plain(
+                &place,
+                self.type_cell(&ty, None),
+                self.lang.text(&variant.text),
+            );
             row.presence = "choice";
             let available = self.available(variant.available.as_ref());
             let deprecated = variant.deprecated.as_ref().map(|it| self.deprecation(it));
@@ -195,10 +175,7 @@ impl<'m> Desk<'_, 'm> {
 
     fn row(&self, owner: &TypeDef, field: &Field, place: &Place) -> Row {
         let details = field.details();
-        let ty = TypeCell {
-            sent: words::sent(field.wire_form, self.lang),
-            ..self.type_cell(&field.ty)
-        };
+        let ty = self.type_cell(&field.ty, words::sent(field.wire_form, self.lang));
         let numbers = details.constraints.numbers();
         Row {
             presence: presence(field.optional, details.condition.is_some()),
@@ -257,7 +234,7 @@ impl<'m> Desk<'_, 'm> {
                     ..More::default()
                 })
             }),
-            ..Row::plain(place, self.type_cell(&field.ty), text)
+            ..Row::plain(place, self.type_cell(&field.ty, None), text)
         }
     }
 
@@ -275,7 +252,7 @@ impl<'m> Desk<'_, 'm> {
         self.to(id, (Page::OpenQuestions, Anchor::named(id)))
     }
 
-    fn type_cell(&self, ty: &Type) -> TypeCell {
+    fn type_cell(&self, ty: &Type, sent: Option<&str>) -> Value {
         let types = &self.book.model.types;
         let inline = |named: &TypeRef| {
             let ty = types.get(named);
@@ -287,14 +264,15 @@ impl<'m> Desk<'_, 'm> {
         };
         let shared = ty.innermost().map(|named| types.get(named));
         let shared = shared.filter(|ty| ty.body_of.is_none());
-        TypeCell {
-            name: words::type_name(ty, &inline),
-            href: shared.map(|ty| self.page.link(self.book.place_of_type(ty))),
-            sent: None,
+        context! {
+            name => words::type_name(ty, &inline),
+            href => shared.map(|ty| self.page.link(self.book.place_of_type(ty))),
+            sent,
         }
     }
 
-    fn length(&self, field: &Field) -> Option<Length> {
+    /// Returns a length, and the things that it counts.
+    fn length(&self, field: &Field) -> Option<Value> {
         let (least, most) = field.details().constraints.length?;
         let count = if least == most {
             least.to_string()
@@ -306,7 +284,7 @@ impl<'m> Desk<'_, 'm> {
             Type::Array(_) => self.lang.pick("项", "items"),
             _ => self.lang.pick("个字符", "characters"),
         };
-        Some(Length { count, of })
+        Some(context! { count, of })
     }
 }
 
@@ -341,7 +319,7 @@ impl Row {
         &self.text
     }
 
-    fn plain(place: &Place, ty: TypeCell, text: &str) -> Self {
+    fn plain(place: &Place, ty: Value, text: &str) -> Self {
         Self {
             path: place.path.clone(),
             anchor: place.anchor.clone().id(),
@@ -424,13 +402,13 @@ fn presence(optional: bool, conditional: bool) -> &'static str {
 
 /// Returns a scalar of the spec as JSON.
 pub(super) fn scalar(scalar: &Scalar) -> String {
-    Value::from(scalar).to_string()
+    Json::from(scalar).to_string()
 }
 
 /// Returns the example of a leaf. Objects and arrays are easier to read in the example of the message.
 fn leaf_example(field: &Field) -> Option<String> {
     match &field.example {
-        Example::Given(Value::Object(_) | Value::Array(_)) | Example::Derived | Example::Absent => {
+        Example::Given(Json::Object(_) | Json::Array(_)) | Example::Derived | Example::Absent => {
             None
         }
         Example::Given(value) => Some(value.to_string()),
