@@ -2,15 +2,12 @@
 //! becomes a line of text, and the site draws it as a grid.
 
 use super::shared::Desk;
-use fc_spec::model::{EnumRepr, Field, Number, StructType, Table, Type, TypeDef, TypeShape, Value};
+use fc_spec::model::{EnumRepr, Field, Number, StructType, Table, Type, TypeShape, Value};
 use std::fmt::Write as _;
 
 /// Returns a line for each row, such as `1: 左上 #1 = 1; 右上 #2 = 2`. The row type must have one array of structs, and
 /// these one array of integers. Every row must contain the same numbers from 1 up; otherwise the result is `None`.
-pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &TypeDef) -> Option<String> {
-    let TypeShape::Struct(row) = &row.shape else {
-        return None;
-    };
+pub(super) fn picture(desk: Desk<'_, '_>, table: &Table, row: &StructType) -> Option<String> {
     let (groups, group) = only(row, |field| match &field.ty {
         Type::Array(item) => match (&**item, named(desk, item)) {
             (Type::Named(_), Some(TypeShape::Struct(shape))) => Some(shape),

@@ -3,16 +3,9 @@
 use super::picture;
 use super::shared::{Desk, list};
 use crate::emit::markdown::links::Anchor;
-use fc_spec::model::{Subject, Table, TypeDef, TypeShape, Value};
+use fc_spec::model::{Field, Subject, Table, Value};
 use minijinja::context;
 use minijinja::value::Serde;
-use serde::Serialize;
-
-#[derive(Debug, Serialize)]
-struct Column {
-    key: String,
-    text: String,
-}
 
 pub(in crate::emit::markdown) fn tables(desk: Desk<'_, '_>) -> minijinja::Value {
     let tables = desk.book.model.tables.iter();
@@ -23,14 +16,19 @@ pub(in crate::emit::markdown) fn tables(desk: Desk<'_, '_>) -> minijinja::Value 
 
 fn view(desk: Desk<'_, '_>, table: &Table) -> minijinja::Value {
     let row_type = desk.book.model.types.get(&table.row);
-    let columns = columns(desk, table, row_type);
+    let shape = desk.book.model.types.structure(&table.row);
+    let is_flat = |field: &&Field| {
+        let mut values = table.rows.iter().filter_map(|row| row.get(&field.wire));
+        values.all(|value| !nests(value))
+    };
+    let columns: Vec<&Field> = shape.fields.iter().filter(is_flat).collect();
     let cells = |row: &Value| {
-        let cell = |column: &Column| {
-            row.get(&column.key)
-                .map(Value::to_string)
-                .unwrap_or_default()
-        };
-        columns.iter().map(cell).collect::<Vec<_>>()
+        let cells = columns.iter().map(|column| row.get(&column.wire));
+        let cells = cells.map(|cell| cell.map(Value::to_string).unwrap_or_default());
+        cells.collect::<Vec<_>>()
+    };
+    let head = |column: &&Field| {
+        context! { key => &column.wire, text => desk.lang.text(&column.text) }
     };
     context! {
         anchor => Anchor::of("table", &table.id).id(),
@@ -39,31 +37,14 @@ fn view(desk: Desk<'_, '_>, table: &Table) -> minijinja::Value {
         about => desk.sentence(&table.about),
         row_type => desk.to(table.row.to_string(), desk.book.place_of_type(row_type)),
         kept => table.kept.as_deref().map(|name| desk.kept(name)),
-        picture => picture::picture(desk, table, row_type),
+        picture => picture::picture(desk, table, shape),
         rows => list(table.rows.iter().map(cells)),
-        columns => Serde(columns),
+        columns => list(columns.iter().map(head)),
         fields => Serde(desk.type_rows(row_type, Anchor::of("table", &table.id))),
         json => Value::Array(table.rows.clone()).pretty(),
         answers => desk.answers_to(&Subject::Table(table.id.clone())),
         spec => desk.spec(&table.location),
     }
-}
-
-fn columns(desk: Desk<'_, '_>, table: &Table, ty: &TypeDef) -> Vec<Column> {
-    let TypeShape::Struct(shape) = &ty.shape else {
-        return Vec::new();
-    };
-    let is_flat = |key: &str| {
-        let mut values = table.rows.iter().filter_map(|row| row.get(key));
-        values.all(|value| !nests(value))
-    };
-    let fields = shape.fields.iter().filter(|field| is_flat(&field.wire));
-    fields
-        .map(|field| Column {
-            key: field.wire.clone(),
-            text: desk.lang.text(&field.text).to_owned(),
-        })
-        .collect()
 }
 
 fn nests(value: &Value) -> bool {
