@@ -7,6 +7,7 @@ use crate::product::Product;
 use crate::product::below;
 use crate::target::{Targets, part};
 use fc_spec::model::Model;
+use minijinja::{Value, context};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -26,28 +27,12 @@ pub(crate) type TabsOf = HashMap<String, Tabs>;
 /// The samples of an operation, with a tab for each language.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Tabs {
-    /// The samples for an app.
-    app: Vec<Tab>,
+    /// The samples for an app, each with the info string of its fence.
+    app: Vec<Value>,
     /// The samples for a robot.
-    robot: Vec<Tab>,
+    robot: Vec<Value>,
     /// The files that contain the same code, in the order of the languages.
-    files: Vec<File>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct Tab {
-    /// The info string of the fence: the language, then the name of the tab.
-    info: String,
-    code: String,
-}
-
-/// A file with the samples of all operations.
-#[derive(Clone, Debug, Serialize)]
-struct File {
-    /// The name of the language.
-    language: &'static str,
-    /// The path, relative to the project's root.
-    path: String,
+    files: Vec<Value>,
 }
 
 /// Returns the samples of all operations of a model.
@@ -66,9 +51,9 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
         let tab = |sample: Sample<'_, '_>| {
             let mut out = context.source();
             (shown.write)(&mut out, &context, &sample);
-            Tab {
-                info: format!("{} [{}]", shown.fence, language.title),
-                code: out.finish(),
+            context! {
+                info => format!("{} [{}]", shown.fence, language.title),
+                code => out.finish(),
             }
         };
         let both = model.operations.par_iter().map(|operation| {
@@ -83,10 +68,9 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
             let tabs = all.entry(name.to_owned()).or_default();
             tabs.app.extend(app);
             tabs.robot.extend(robot);
-            tabs.files.push(File {
-                language: language.title,
-                path: below(place, shown.file),
-            });
+            let path = below(place, shown.file);
+            tabs.files
+                .push(context! { language => language.title, path });
         }
     }
     all
