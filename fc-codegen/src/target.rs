@@ -356,23 +356,17 @@ fn product_settings(
     texts: Languages,
     faults: &mut Faults,
 ) -> Settings {
-    let is_code = !matches!(
-        product,
-        Product::Markdown | Product::Vectors | Product::Schema
-    );
+    // The files of the other products are the same in every language.
+    let has_texts = !matches!(product, Product::Vectors | Product::Schema);
     let keys = [
         ("plugin", false),
         ("names", false),
         ("options", false),
         (TIMEOUT_MS.key, false),
         (OUTPUT_BYTES.key, false),
-        // Their files are the same in every language.
-        (
-            "languages",
-            !matches!(product, Product::Vectors | Product::Schema),
-        ),
+        ("languages", has_texts),
         ("crate", product == Product::Rust),
-        ("newtypes", is_code),
+        ("newtypes", has_texts && product != Product::Markdown),
         // The spec language is the same for every audience.
         ("audience", product != Product::Schema),
     ];
@@ -445,8 +439,7 @@ fn unknown_target(target: &TargetSettings) -> Diagnostic {
     let products = || Product::ALL.iter().map(|product| product.name());
     let name = target.name.as_str();
     let message = text!("没有产物 `{name}`", "there is no product `{name}`");
-    let fault = Diagnostic::error(FaultCode::BadWord, target.span, message);
-    with_nearest(fault, name, products()).note(text!(
+    bad_word(name, target.span, message, products()).note(text!(
         "产物有：{known}；其他名称的目标需要 `plugin`",
         "the products are {known}; a target of another name needs a `plugin`",
         known = listed(products())
@@ -459,8 +452,7 @@ fn unknown_language(name: &str, span: Span) -> Diagnostic {
         "没有编程语言 `{name}`",
         "there is no programming language `{name}`"
     );
-    let fault = Diagnostic::error(FaultCode::BadWord, span, message);
-    with_nearest(fault, name, all()).note(text!(
+    bad_word(name, span, message, all()).note(text!(
         "语言有：{known}",
         "the languages are {known}",
         known = listed(all())
@@ -471,18 +463,17 @@ fn listed<'n>(names: impl Iterator<Item = &'n str>) -> Text {
     Text::listed(names.map(|name| format!("`{name}`")))
 }
 
-fn with_nearest<'n>(
-    fault: Diagnostic,
+/// Reports a word that is not one of `words`, and suggests the nearest one.
+fn bad_word<'n>(
     word: &str,
+    span: Span,
+    message: Text,
     words: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
+    let fault = Diagnostic::error(FaultCode::BadWord, span, message);
     let Some(near) = nearest(word, words) else {
         return fault;
     };
-    let span = fault.primary.span;
-    fault.fix(
-        span,
-        near,
-        text!("是否为 `{near}`？", "did you mean `{near}`?"),
-    )
+    let question = text!("是否为 `{near}`？", "did you mean `{near}`?");
+    fault.fix(span, near, question)
 }
