@@ -39,30 +39,27 @@ pub fn calls(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '_>
     });
 }
 
-/// Returns `self`, the request and the options of a call.
-fn parameters(command: &Call<'_>) -> Vec<Code> {
+/// Writes a method that calls a command: its parameters are the request and the options of the call.
+fn calling(
+    out: &mut Source,
+    open: &str,
+    command: &Call<'_>,
+    returns: &str,
+    body: impl FnOnce(&mut Source),
+) {
     let request = &command.request.ty.name;
     let is_empty = command.request.fields().iter().all(|field| field.optional);
-    let request = if is_empty {
-        format!("request: {request} | None = None")
-    } else {
-        format!("request: {request}")
-    };
-    [
-        "self",
-        &request,
-        "*",
-        "timeout: float | None = None",
-        "repeat: bool | None = None",
-    ]
-    .map(Code::from)
-    .to_vec()
+    let or_none = if is_empty { " | None = None" } else { "" };
+    let request = format!("request: {request}{or_none}");
+    let (timeout, repeat) = ("timeout: float | None = None", "repeat: bool | None = None");
+    let parameters = ["self", &request, "*", timeout, repeat];
+    method(out, open, &parameters, returns, body);
 }
 
 fn deprecated(out: &mut Source, command: &Call<'_>) {
     if let Some(deprecation) = &command.operation.deprecated {
         let note = literal(&facts::withdrawn_note(deprecation));
-        Code::call("rt.deprecated", vec![note.into()]).write(out, "@", "");
+        Code::call("rt.deprecated", [note]).write(out, "@", "");
     }
 }
 
@@ -103,7 +100,7 @@ fn call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     };
     arguments.extend(options);
     let open = format!("{word} {}(", command.method);
-    method(out, &open, parameters(command), &returns, |out| {
+    calling(out, &open, command, &returns, |out| {
         out.docstring(&docs);
         Code::call(function, arguments).write(out, "return ", "");
     });
@@ -118,10 +115,9 @@ fn subscribe(out: &mut Source, context: &Context<'_>, stream: &Operation) {
     let held = context.content(stream).unwrap_or("bytes");
     let returns = format!("rt.Subscription[{held}]");
     let open = format!("def subscribe_{}(", stream.name);
-    method(out, &open, vec!["self".into()], &returns, |out| {
+    method(out, &open, &["self"], &returns, |out| {
         out.docstring(&facts::method_docs(context, stream, |_| ()));
-        let arguments = vec![constant(context, stream).into()];
-        Code::call("self.data.subscribe", arguments).write(out, "return ", "");
+        Code::call("self.data.subscribe", [constant(context, stream)]).write(out, "return ", "");
     });
 }
 
@@ -166,7 +162,7 @@ fn sync_call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
     out.blank();
     deprecated(out, command);
     let open = format!("def {}(", command.method);
-    method(out, &open, parameters(command), response, |out| {
+    calling(out, &open, command, response, |out| {
         out.docstring(&facts::command_docs(context, operation, declared));
         Code::call("self._call", told(&[operation])).write(out, "return ", "");
     });
@@ -185,7 +181,7 @@ fn sync_call(out: &mut Source, context: &Context<'_>, command: &Call<'_>) {
         let open = format!("def {name}(");
         out.blank();
         deprecated(out, command);
-        method(out, &open, parameters(command), &returns, |out| {
+        calling(out, &open, command, &returns, |out| {
             out.docstring(&follow_docs(context, operation, report, followed));
             let arguments = told(&[operation, report]);
             Code::call("self._follow", arguments).write(out, "return ", "");
@@ -209,11 +205,11 @@ pub fn streams(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, '
 }
 
 fn send(out: &mut Source, context: &Context<'_>, stream: &Operation) {
-    let parameters = ["self", "message_id: int", &content(context, stream)].map(Code::from);
+    let parameters = ["self", "message_id: int", &content(context, stream)];
     let open = format!("async def send_{}(", stream.name);
-    method(out, &open, parameters.to_vec(), "None", |out| {
+    method(out, &open, &parameters, "None", |out| {
         out.docstring(&facts::method_docs(context, stream, |_| ()));
-        let arguments = [&*constant(context, stream), "message_id", "content"].map(Code::from);
-        Code::call("self.data.send_stream", arguments.to_vec()).write(out, "await ", "");
+        let arguments = [&*constant(context, stream), "message_id", "content"];
+        Code::call("self.data.send_stream", arguments).write(out, "await ", "");
     });
 }

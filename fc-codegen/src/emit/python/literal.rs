@@ -97,12 +97,12 @@ impl Constants {
             Expr::Float(value) => float(*value),
             Expr::Text(text) => literal(text),
             Expr::Bytes(value) => bytes(value),
-            Expr::Json(text) => return Code::call("rt.Json", vec![literal(text).into()]),
+            Expr::Json(text) => return Code::call("rt.Json", [literal(text)]),
             Expr::Value(item, value) => format!("{}.{}", self.named(item), value.name),
-            Expr::Unlisted(_, value) => return Code::call("rt.Unknown", vec![self.value(value)]),
+            Expr::Unlisted(_, value) => return Code::call("rt.Unknown", [self.value(value)]),
             Expr::Id(ty, value) => {
                 self.types.insert((*ty).to_owned());
-                return Code::call(ty, vec![self.value(value)]);
+                return Code::call(ty, [self.value(value)]);
             }
             Expr::List(items) => {
                 let items = items.iter().map(|item| self.value(item));
@@ -119,7 +119,7 @@ impl Constants {
             let value = self.value(value.as_ref()?);
             Some(Code::named(&field.name, value))
         });
-        let members = members.collect();
+        let members: Vec<Code> = members.collect();
         Code::call(&self.named(record.item), members)
     }
 

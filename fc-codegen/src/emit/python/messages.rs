@@ -279,7 +279,7 @@ fn choice<'m>(
     used.library("typing", "Annotated");
     used.library("typing", "TypeAlias");
     let names = variants.iter().map(|it| literal(&it.of.name).into());
-    let names = Code::call("rt.Variants", vec![Code::tuple(names.collect())]);
+    let names = Code::call("rt.Variants", [Code::tuple(names.collect())]);
     let types = variants.iter().map(|variant| {
         used.named(&variant.of.ty);
         context.name_of(&variant.of.ty).to_owned()

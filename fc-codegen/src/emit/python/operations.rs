@@ -70,7 +70,7 @@ pub fn seconds(ms: u32) -> String {
 pub fn ack(ack: Ack) -> Code {
     let timeout = format!("timeout={}", seconds(ack.timeout_ms));
     let retries = format!("retries={}", ack.retries);
-    Code::call("rt.AckPolicy", vec![timeout.into(), retries.into()])
+    Code::call("rt.AckPolicy", [timeout, retries])
 }
 
 fn value(context: &Context<'_>, operation: &Operation) -> Code {
@@ -188,9 +188,9 @@ fn states(context: &Context<'_>, set: &StateSet) -> Code {
         constant_of(&value)
     });
     let values = Code::List("{", values.collect(), "}");
-    let values = Code::call("frozenset", vec![values]);
+    let values = Code::call("frozenset", [values]);
     let of = context.name_of(&set.ty).into();
-    Code::call("rt.States", vec![of, values])
+    Code::call("rt.States", [of, values])
 }
 
 fn sets_off(context: &Context<'_>, command: &Operation) -> Vec<Code> {
@@ -234,5 +234,5 @@ fn cadence(cadence: &Cadence) -> Code {
         Cadence::EveryMs(ms) => Code::named("every", seconds(*ms)),
         Cadence::WithinMs(ms) => Code::named("within", seconds(*ms)),
     };
-    Code::call("rt.Cadence", vec![said])
+    Code::call("rt.Cadence", [said])
 }

@@ -166,7 +166,7 @@ fn protocol(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) 
             let value = vec![grouped(code.into()).into(), text(said)];
             Code::named(result.role, Code::call("rt.ResultText", value))
         });
-        set(out, "results", Code::call("rt.Results", results.collect()));
+        set(out, "results", Code::call("rt.Results", results));
         set(out, "defaults", defaults(wire));
         for (name, kind) in KINDS {
             let groups = plan.parts(GroupPart::All(kind)).into_iter();
@@ -232,7 +232,7 @@ fn defaults(wire: &WireFacts<'_, '_>) -> Code {
     items.extend([
         Code::named("max_age", max_age),
         Code::named("ack", ack(wire.ack)),
-        Code::named("limits", Code::call("rt.Limits", limits.to_vec())),
+        Code::named("limits", Code::call("rt.Limits", limits)),
     ]);
     Code::call("rt.Defaults", items)
 }

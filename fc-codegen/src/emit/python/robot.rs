@@ -13,10 +13,10 @@ use crate::package::source::Source;
 /// Writes a method that handles a command.
 fn handler(out: &mut Source, command: &Call<'_>, body: impl FnOnce(&mut Source)) {
     let request = format!("request: {}", command.request.ty.name);
-    let parameters = ["self", "context: rt.Context", &request].map(Code::from);
+    let parameters = ["self", "context: rt.Context", &request];
     let open = format!("async def {}(", command.method);
     let returns = &command.response.ty.name;
-    method(out, &open, parameters.to_vec(), returns, body);
+    method(out, &open, &parameters, returns, body);
 }
 
 /// Writes the methods that a complete robot must implement.
@@ -66,15 +66,14 @@ pub fn reporter(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
                 docs.paragraph("Returns the outcome at each connection.");
             });
             let message = format!("report: {}", report.request.ty.name);
-            let parameters = ["self", &message, "to: int | None = None"].map(Code::from);
+            let parameters = ["self", &message, "to: int | None = None"];
             let open = format!("async def {}(", report.method);
             let returns = "list[rt.Acknowledgement]";
             out.blank();
-            method(out, &open, parameters.to_vec(), returns, |out| {
+            method(out, &open, &parameters, returns, |out| {
                 out.docstring(&docs);
                 let arguments = [&*constant(context, operation), "report", "to"];
-                Code::call("await self.server.push", arguments.map(Code::from).to_vec())
-                    .write(out, "return ", "");
+                Code::call("await self.server.push", arguments).write(out, "return ", "");
             });
         }
     });
@@ -89,13 +88,11 @@ pub fn streamer(out: &mut Source, context: &Context<'_>, group: &NamedGroup<'_, 
             docs.paragraph("Returns the number of data connections that took it.");
             let held = content(context, stream);
             let parameters = ["self", "message_id: int", &held, "to: int | None = None"];
-            let parameters = parameters.map(Code::from).to_vec();
             let open = format!("async def send_{}(", stream.of.name);
             out.blank();
-            method(out, &open, parameters, "int", |out| {
+            method(out, &open, &parameters, "int", |out| {
                 out.docstring(&docs);
                 let arguments = [&*constant(context, stream), "message_id", "content", "to"];
-                let arguments = arguments.map(Code::from).to_vec();
                 Code::call("await self.server.send_stream", arguments).write(out, "return ", "");
             });
         }

@@ -4,7 +4,7 @@ use super::literal::Constants;
 use super::messages::annotation;
 use super::modules::ModulePlan;
 use super::protocol;
-use super::source::{Code, Python, exported, method, sorted};
+use super::source::{Python, exported, method, sorted};
 use crate::package::about;
 use crate::package::context::Context;
 use crate::package::docs::Docs;
@@ -164,16 +164,11 @@ pub fn tables(context: &Context<'_>) -> String {
         let rows = constants.value(&context.package.rows(table));
         body.gap();
         let open = format!("def {}(", table.name);
-        method(
-            &mut body,
-            &open,
-            Vec::<Code>::new(),
-            &format!("list[{row}]"),
-            |out| {
-                out.docstring(&about::table(context, table.of));
-                rows.write(out, "return ", "");
-            },
-        );
+        let returns = format!("list[{row}]");
+        method(&mut body, &open, &[], &returns, |out| {
+            out.docstring(&about::table(context, table.of));
+            rows.write(out, "return ", "");
+        });
     }
     let mut out = context.source();
     out.docstring(&Docs::said(about::TABLES));

@@ -3,7 +3,7 @@
 //! A test of the package contains the same text, so no sample can become invalid.
 
 use super::literal::Constants;
-use super::source::{Code, PYTHON, Python, method};
+use super::source::{PYTHON, Python, method};
 use crate::package::context::Context;
 use crate::package::expr::Record;
 use crate::package::language::PYTHON as LANGUAGE;
@@ -46,9 +46,9 @@ fn write(out: &mut Source, names: &mut Constants, sample: &Sample<'_, '_>) {
             let [request, response] =
                 [call.request, call.response].map(|it| it.ty.name.to_string());
             let request_parameter = format!("request: {request}");
-            let parameters = ["self", "context: rt.Context", &request_parameter].map(Code::from);
+            let parameters = ["self", "context: rt.Context", &request_parameter];
             let open = format!("async def {}(", call.method);
-            method(out, &open, parameters.to_vec(), &response, |out| {
+            method(out, &open, &parameters, &response, |out| {
                 out.line("print(context.address, \"asks:\", request)");
                 names.record(answer).write(out, "return ", "");
             });

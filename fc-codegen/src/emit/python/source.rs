@@ -52,8 +52,9 @@ pub enum Code {
 
 impl Code {
     /// Returns `function(…)`.
-    pub fn call(function: &str, arguments: Vec<Self>) -> Self {
-        Self::Call(format!("{function}("), arguments, ")")
+    pub fn call(function: &str, arguments: impl IntoIterator<Item: Into<Self>>) -> Self {
+        let arguments = arguments.into_iter().map(Into::into);
+        Self::Call(format!("{function}("), arguments.collect(), ")")
     }
 
     /// Returns `name=value`.
@@ -252,11 +253,12 @@ fn end_of_line(out: &Source, text: &str) -> usize {
 pub fn method(
     out: &mut Source,
     open: &str,
-    parameters: Vec<Code>,
+    parameters: &[&str],
     returns: &str,
     body: impl FnOnce(&mut Source),
 ) {
-    let signature = Code::Call(open.to_owned(), parameters, ")");
+    let parameters = parameters.iter().map(|it| Code::from(*it));
+    let signature = Code::Call(open.to_owned(), parameters.collect(), ")");
     signature.write(out, "", &format!(" -> {returns}:"));
     out.enclose("", "", body);
 }
@@ -343,8 +345,8 @@ mod tests {
     #[test]
     fn brackets_open_when_they_have_to() {
         let call = |words: &[usize]| {
-            let words = words.iter().map(|length| "a".repeat(*length).into());
-            Code::call("f", words.collect())
+            let words = words.iter().map(|length| "a".repeat(*length));
+            Code::call("f", words)
         };
         assert_eq!(written(&call(&[2, 3]), "x = ", ""), "x = f(aa, aaa)\n");
         let (fifty, sixty) = ("a".repeat(50), "a".repeat(60));

@@ -121,11 +121,10 @@ fn complete(out: &mut Source, context: &Context<'_>, plan: &ModulePlan<'_, '_>) 
         speaks(out, context);
         for (name, range) in pass_through(context) {
             let parameters = ["self", "context: rt.Context", "request: rt.RawRequest"];
-            let parameters = parameters.map(Code::from).to_vec();
             let open = format!("async def {name}(");
             out.blank();
             out.line("@rt.left_out");
-            method(out, &open, parameters, "rt.Json", |out| {
+            method(out, &open, &parameters, "rt.Json", |out| {
                 out.docstring(&about::refused(Some(range)));
                 out.line("raise NotImplementedError");
             });
