@@ -113,7 +113,7 @@ pub fn variant_payload<'a>(
     payload
 }
 
-/// Returns the position of what a variant holds.
+/// Returns the payload of a variant, or its name without one, as the place of an error.
 pub fn place(variant: &Variant) -> &dyn ToTokens {
     match &variant.fields {
         Fields::Unit => &variant.ident,
