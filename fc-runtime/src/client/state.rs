@@ -175,25 +175,25 @@ counters! {
     bytes_in,
     /// Bytes handed to the connection to be sent.
     bytes_out,
-    /// Answers that reached their call.
+    /// Responses delivered to their call.
     answers,
-    /// Answers nobody waited for any more.
+    /// Responses that arrived after the end of their call.
     late_answers,
-    /// Calls that ended without an answer in time.
+    /// Calls that ended without a response in time.
     timeouts,
     /// Reports put into the queue of at least one receiver, and acknowledged.
     reports,
-    /// Reports that one receiver had no room for while another one took them, counted per receiver.
+    /// Reports that a full receiver missed while another one took them, counted per receiver.
     reports_missed,
-    /// Reports that came again and were only acknowledged.
+    /// Repeated reports, which were only acknowledged.
     repeated_reports,
-    /// Reports left unacknowledged because no receiver had room for them, or there was none.
+    /// Reports not acknowledged, because there was no receiver or none had room.
     reports_refused,
-    /// Reports refused because they do not read as what their code says, or have no proper envelope.
+    /// Reports refused because of an invalid body or envelope.
     reports_invalid,
-    /// Reports that came more than one and a half of their intervals after the last of their kind over the same connection.
+    /// Reports later than one and a half intervals after the last one of their kind on the connection.
     reports_late,
-    /// Reports that came in another order than the protocol says, counted by each who follows the process.
+    /// Reports in an order that the spec does not allow, counted by each follower of the process.
     reports_out_of_order,
     /// Frames that could not be read.
     bad_frames,
@@ -215,14 +215,10 @@ impl FedMetrics {
             counters: CounterMetrics::new(),
             connects: Counter::new(
                 "fc_client_connects_total",
-                "Connections made, those after a loss included.",
+                "Connections made, including reconnections.",
             ),
             counted: 0,
-            connected: Gauge::new(
-                "fc_client_connected",
-                "Connections to a robot that there are at this moment.",
-                None,
-            ),
+            connected: Gauge::new("fc_client_connected", "Open connections to a robot.", None),
             is_connected: None,
         }
     }
@@ -285,11 +281,7 @@ impl<P: Protocol> Inner<P> {
                 limiters: LogLimiters::default(),
             }),
             operations: Operations::of::<P>(&CLIENT),
-            flying: Gauge::new(
-                "fc_client_calls_in_flight",
-                "Calls that have not ended at this moment.",
-                None,
-            ),
+            flying: Gauge::new("fc_client_calls_in_flight", "Calls in flight.", None),
             encoder: Mutex::new(config.encoder()),
             call_timeout: config.call_timeout_or_default::<P>(),
             limits,

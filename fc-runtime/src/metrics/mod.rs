@@ -33,7 +33,7 @@ pub(crate) struct Family {
 #[cfg(feature = "client")]
 pub(crate) const CLIENT: Family = Family {
     calls: "fc_client_calls_total",
-    calls_help: "Calls that have ended, by operation and by what they have ended with.",
+    calls_help: "Calls that have ended, by operation and result.",
     seconds: "fc_client_call_duration_seconds",
     seconds_help: "Time from a call to its end, by operation.",
 };
@@ -42,7 +42,7 @@ pub(crate) const CLIENT: Family = Family {
 #[cfg(feature = "server")]
 pub(crate) const SERVER: Family = Family {
     calls: "fc_server_calls_total",
-    calls_help: "Requests answered, by operation and result.",
+    calls_help: "Requests with a response, by operation and result.",
     seconds: "fc_server_handler_duration_seconds",
-    seconds_help: "Time from the beginning of a handler to its end, by operation.",
+    seconds_help: "Time from the start of a handler to its end, by operation.",
 };

@@ -63,45 +63,39 @@ counters! {
     connections,
     /// Connections accepted at the data port.
     data_connections,
-    /// Connections closed at once because there were as many as there may be already, in total or
-    /// from their address.
+    /// Connections closed at once because the limit was reached, in total or for their address.
     connections_refused,
-    /// Connections closed at once because none may come from their address.
+    /// Connections closed at once because their address is not allowed.
     connections_forbidden,
-    /// Connections closed to make room for another, because nothing had come over them yet.
+    /// Silent connections closed to make room for another.
     connections_displaced,
     /// Connections closed because memory was short and they held most of it.
     connections_evicted,
-    /// Connections closed because a header did not come in time, a frame or a reader stalled, or
-    /// nothing came for too long.
+    /// Connections closed by a timeout: of a header, of a stalled frame or reader, or of silence.
     connections_timed_out,
-    /// Connections closed because their handshake failed or did not come in time, such as that of TLS
-    /// from an app without a certificate.
+    /// Connections closed because their handshake failed or was late, such as TLS without a certificate.
     handshakes_failed,
-    /// Requests answered with success.
+    /// Requests with the result of success.
     calls_succeeded by operation,
-    /// Requests answered with the result of a protocol error.
+    /// Requests with the result of a protocol error.
     calls_protocol by operation,
-    /// Requests answered with the result of a timeout.
+    /// Requests with the result of a timeout.
     calls_timed_out by operation,
-    /// Requests answered with the result of an invalid parameter.
+    /// Requests with the result of an invalid parameter.
     calls_invalid by operation,
-    /// Requests answered with the result of an expired message.
+    /// Requests with the result of an expired message.
     calls_expired by operation,
-    /// Requests that a handler answered with another result.
+    /// Requests with another result of their handler.
     calls_refused by operation,
-    /// Requests refused because they may not be made from their address. They are among
-    /// `calls_protocol`.
+    /// Requests refused because their address does not allow them; included in `calls_protocol`.
     calls_forbidden,
-    /// Requests refused because the robot does not implement a command of the spec. They are among
-    /// `calls_protocol`.
+    /// Requests refused because the robot does not implement their command; included in `calls_protocol`.
     calls_not_implemented,
-    /// Handlers that panicked. Their requests are among `calls_protocol`.
+    /// Handlers that panicked. Their requests are included in `calls_protocol`.
     handlers_panicked,
-    /// Handlers that ran on though nobody waited for their answer any more.
+    /// Handlers that ran on after their timeout or the end of their connection.
     handlers_abandoned,
-    /// Requests refused because as many of these as `abandoned_handlers` were at work. They are
-    /// among `calls_protocol`.
+    /// Requests refused because `abandoned_handlers` of these were running; included in `calls_protocol`.
     abandoned_reached,
     /// Frames that could not be read.
     bad_frames,
@@ -117,13 +111,13 @@ counters! {
     reports_timed_out,
     /// Reports dropped because an app's queue was full.
     reports_dropped,
-    /// Times a connection was not read because as many handlers as `in_flight` were at work.
+    /// Times a connection was not read because `in_flight` of its handlers were running.
     in_flight_reached,
-    /// Times a connection was not read for a while because of useless work it had made.
+    /// Times a connection was not read for a while because of useless frames.
     connections_paced,
     /// Stream frames received.
     stream_frames_in,
-    /// Stream frames of apps dropped because nobody took them.
+    /// Stream frames of apps dropped without a receiver.
     stream_frames_dropped,
     /// Stream frames sent.
     stream_frames_out,
@@ -236,7 +230,7 @@ impl Gauges {
         let connections = |port| {
             Gauge::new(
                 "fc_server_open_connections",
-                "Connections open at this moment, by port.",
+                "Open connections, by port.",
                 Some(port),
             )
         };
@@ -245,7 +239,7 @@ impl Gauges {
             data_connections: connections("data"),
             handlers: Gauge::new(
                 "fc_server_handlers_waiting",
-                "Handlers at work that were not ready at once, those that nobody waits for included.",
+                "Running handlers that wait for something, including detached ones.",
                 None,
             ),
         }

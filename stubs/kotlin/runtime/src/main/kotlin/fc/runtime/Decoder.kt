@@ -159,7 +159,7 @@ internal class Decoder(
     /** Checks a complete frame and returns its data. The order decides between several errors. */
     private fun check(header: Header, from: Int, to: Int): ByteArray {
         val kind = header.id.kind
-        if (kind in protocol.reservedKinds) throw skipped(FrameErrorKind.RESERVED_KIND, header, "nobody may use it yet")
+        if (kind in protocol.reservedKinds) throw skipped(FrameErrorKind.RESERVED_KIND, header, "the kind is reserved")
         if (kind != protocol.commandKind && kind != protocol.reportKind && kind != protocol.streamKind) {
             throw skipped(FrameErrorKind.UNKNOWN_KIND, header, "the protocol has no such kind")
         }
