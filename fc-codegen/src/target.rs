@@ -24,7 +24,9 @@ pub use crate::plugin::Plugin;
 pub use crate::target_error::{FILE, TargetError};
 
 use crate::check::Requirements;
+use crate::package::context::Context;
 use crate::package::language as languages;
+use crate::package::style::Style;
 use crate::plugin::{OUTPUT_BYTES, TIMEOUT_MS};
 use crate::product::{Artifact, Product, below};
 use crate::target_error::{InvalidSettings, quoted};
@@ -284,6 +286,19 @@ impl Targets {
         } else {
             language
         }
+    }
+
+    /// Returns the package of a product, with comments that link to the project's docs.
+    #[must_use]
+    pub fn context<'m>(
+        &self,
+        model: &'m Model,
+        product: Product,
+        language: &'static languages::Language,
+        style: &'static Style,
+    ) -> Context<'m> {
+        Context::new(model, self.naming(language), style)
+            .commented(self.texts_of(product), self.docs())
     }
 
     /// Returns `true` if the packages have a type for the IDs of each entity.

@@ -5,9 +5,7 @@ use super::style::Style;
 use crate::package::items::{Call, Item, Package, Shape, Spelled};
 use crate::package::joined::Joined;
 use crate::package::language::Language;
-use crate::product::Product;
 use crate::sample::{Profile, Samples};
-use crate::target::Targets;
 use fc_spec::model::{
     Accepted, Direction, Entity, EnumType, EnumValue, Kind, Lang, Languages, Location, Model,
     Operation, StructRef, Type, TypeRef,
@@ -35,10 +33,10 @@ impl<'m> Context<'m> {
         }
     }
 
-    /// Sets the languages of the comments, and the pages to which they link, for a product of these targets.
-    pub fn of_target(self, targets: &Targets, product: Product) -> Self {
-        let languages = targets.texts_of(product);
-        let docs = targets.docs().into_iter();
+    /// Sets the languages of the comments, and the folder of the pages in each language.
+    #[must_use]
+    pub fn commented(self, languages: Languages, docs: Vec<(Lang, String)>) -> Self {
+        let docs = docs.into_iter();
         Self {
             languages,
             docs: docs.filter(|(it, _)| languages.include(*it)).collect(),

@@ -57,10 +57,7 @@ const CRATES: &[Crate] = &[
             "questions",
             "inspect",
         ],
-        upwards: &[
-            // Comments link to the pages of the targets.
-            ("package", "target"),
-        ],
+        upwards: &[],
     },
     Crate {
         name: "fc-runtime",

@@ -18,7 +18,6 @@ mod streams;
 mod tables;
 mod types;
 
-use crate::package::context::Context;
 use crate::package::language::CPP;
 use crate::product::{Artifact, Product};
 use crate::target::Targets;
@@ -30,8 +29,7 @@ const SOURCES: &str = "sources.cmake";
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context =
-        &Context::new(model, targets.naming(&CPP), &layout::CPP).of_target(targets, Product::Cpp);
+    let context = &targets.context(model, Product::Cpp, &CPP, &layout::CPP);
     let space = &types::namespace(context);
     let groups = &groups::groups(context);
     let (headers, homes) = types::headers(context);

@@ -30,8 +30,7 @@ use text::STYLE;
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context =
-        &Context::new(model, targets.naming(&KOTLIN), &STYLE).of_target(targets, Product::Kotlin);
+    let context = &targets.context(model, Product::Kotlin, &KOTLIN, &STYLE);
     // A keyword cannot be the name of a package either.
     let package = KOTLIN.spelled(Role::Module, &model.protocol.id);
     let groups = Group::all(&context.package);

@@ -18,7 +18,6 @@ pub mod samples;
 mod source;
 mod stubs;
 
-use crate::package::context::Context;
 use crate::package::language::{PYTHON, Role};
 use crate::product::{Artifact, Product};
 use crate::target::Targets;
@@ -28,8 +27,7 @@ use modules::ModulePlan;
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, targets.naming(&PYTHON), &source::PYTHON)
-        .of_target(targets, Product::Python);
+    let context = &targets.context(model, Product::Python, &PYTHON, &source::PYTHON);
     let plan = &ModulePlan::build(context);
     let package = PYTHON.spelled(Role::Module, &model.protocol.id);
     let ids = !context.package.ids.is_empty();

@@ -33,7 +33,7 @@ use fc_spec::model::Model;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 fn context<'m>(model: &'m Model, targets: &Targets) -> Context<'m> {
-    Context::new(model, targets.naming(&RUST), &source::RUST).of_target(targets, Product::Rust)
+    targets.context(model, Product::Rust, &RUST, &source::RUST)
 }
 
 /// Generates all sources of the crate.

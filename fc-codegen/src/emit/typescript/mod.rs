@@ -82,8 +82,7 @@ static KINDS: [Kind; 6] = [
 /// Generates all files of the generated part.
 #[must_use]
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
-    let context = &Context::new(model, targets.naming(&LANGUAGE), &TYPESCRIPT)
-        .of_target(targets, Product::TypeScript);
+    let context = &targets.context(model, Product::TypeScript, &LANGUAGE, &TYPESCRIPT);
     let samples = &Samples::new(model);
     let groups = &Group::all(&context.package);
     let mut files: Vec<(String, &str, String)> = Vec::new();
