@@ -1,7 +1,5 @@
 //! `fcproto explain`.
 
-use std::fmt::Write as _;
-
 use fc_diff::Rule;
 use fc_spec::diagnostic::{FaultCode, nearest};
 use fc_spec::lint;
@@ -22,34 +20,38 @@ pub struct Options {
 
 pub fn run(options: &Options) -> Result<Status, Failure> {
     let lang = lang();
-    let colon = lang.pick("：", ": ");
-    let mut text = String::new();
-    match &options.code {
+    let text = match &options.code {
         None => {
-            for code in FaultCode::ALL {
-                let _ = writeln!(text, "{code}  {}", code.title(lang));
-            }
-            for rule in Rule::all() {
-                let _ = writeln!(text, "{}  {}", rule.code(), rule.title_in(lang));
-            }
-            for rule in lint::Rule::all() {
-                let _ = writeln!(text, "{}  {}", rule.code.number, rule.code.title_in(lang));
-            }
+            let codes = FaultCode::ALL.iter();
+            let codes = codes.map(|code| (code.to_string(), code.title(lang)));
+            let rules = Rule::all().map(|rule| (rule.code(), rule.title_in(lang)));
+            let lints = lint::Rule::all();
+            let lints = lints.map(|rule| (rule.code.number.to_owned(), rule.code.title_in(lang)));
+            let all = codes.chain(rules).chain(lints);
+            let listed: Vec<_> = all
+                .map(|(code, title)| format!("{code}  {title}\n"))
+                .collect();
+            listed.concat()
         }
         Some(number) => {
-            if let Some(rule) = Rule::parse(number) {
-                let (code, title) = (rule.code(), rule.title_in(lang));
-                let _ = write!(text, "{code}{colon}{title}\n\n{}", rule.explain(lang));
+            let (code, title, about) = if let Some(rule) = Rule::parse(number) {
+                let about = rule.explain(lang);
+                (rule.code(), rule.title_in(lang), about)
             } else if let Some(rule) = lint::Rule::parse(number) {
-                let (code, title) = (rule.code.number, rule.code.title_in(lang));
-                let _ = write!(text, "{code}{colon}{title}\n\n{}", rule.explain(lang));
+                let code = &rule.code;
+                (
+                    code.number.to_owned(),
+                    code.title_in(lang),
+                    rule.explain(lang),
+                )
             } else {
                 let code = FaultCode::parse(number).ok_or_else(|| unknown(number))?;
-                let (title, about) = (code.title(lang), code.explain(lang));
-                let _ = write!(text, "{code}{colon}{title}\n\n{about}");
-            }
+                let about = code.explain(lang).to_owned();
+                (code.to_string(), code.title(lang), about)
+            };
+            said!("{code}：{title}\n\n{about}", "{code}: {title}\n\n{about}")
         }
-    }
+    };
     print::result(&text)?;
     Ok(Status::Fine)
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::lang::{both, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unreadable, unwritable};
 use crate::place::Place;
 use crate::{generate, print};
 
@@ -95,14 +95,7 @@ fn refuse_what_is_there(directory: &Path) -> Result<(), Failure> {
     let entries = match fs::read_dir(directory) {
         Ok(entries) => entries,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => {
-            let directory = directory.display();
-            let message = said!(
-                "无法读取 `{directory}`：{error}",
-                "cannot read `{directory}`: {error}"
-            );
-            return Err(message.into());
-        }
+        Err(error) => return Err(unreadable(directory)(error)),
     };
     for entry in entries {
         let name = entry?.file_name();
@@ -150,12 +143,6 @@ fn path_of(path: &Path) -> Result<String, Failure> {
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
     let made = path.parent().map_or(Ok(()), fs::create_dir_all);
-    made.and_then(|()| fs::write(path, text)).map_err(|error| {
-        let path = path.display();
-        said!(
-            "无法写入 `{path}`：{error}",
-            "cannot write `{path}`: {error}"
-        )
-        .into()
-    })
+    let written = made.and_then(|()| fs::write(path, text));
+    written.map_err(unwritable(path))
 }

@@ -1,5 +1,10 @@
 //! The outcome of a command.
 
+use std::io;
+use std::path::Path;
+
+use crate::lang::said;
+
 /// The outcome of a command. Its number is the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -17,3 +22,27 @@ pub enum Status {
 
 /// The reason why a command failed: a sentence for the user.
 pub type Failure = Box<dyn std::error::Error>;
+
+/// Makes an error in reading a path the reason of a failure.
+pub fn unreadable(path: &Path) -> impl Fn(io::Error) -> Failure {
+    let path = path.display();
+    move |error| {
+        said!(
+            "无法读取 `{path}`：{error}",
+            "cannot read `{path}`: {error}"
+        )
+        .into()
+    }
+}
+
+/// Makes an error in writing a path the reason of a failure.
+pub fn unwritable(path: &Path) -> impl Fn(io::Error) -> Failure {
+    let path = path.display();
+    move |error| {
+        said!(
+            "无法写入 `{path}`：{error}",
+            "cannot write `{path}`: {error}"
+        )
+        .into()
+    }
+}

@@ -3,8 +3,10 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use fc_codegen::output::replace_spec_file;
 use fc_codegen::target::{FILE, Targets};
 use fc_spec::diagnostic::Faults;
+use fc_spec::source::Sources;
 use fc_spec::syntax::read_files;
 
 use crate::lang::{in_lang, said};
@@ -63,6 +65,18 @@ impl Project {
             None => above(place, directory)?,
         };
         Self::at(root, place)
+    }
+
+    /// Writes the files of the spec that have changed, and returns their paths.
+    pub fn write_changes(&self, before: &Sources, after: &Sources) -> Result<Vec<String>, Failure> {
+        let mut written = Vec::new();
+        for ((_, before), (_, file)) in before.iter().zip(after.iter()) {
+            if file.text != before.text {
+                replace_spec_file(&self.root, &file.path, &file.text)?;
+                written.push(file.path.clone());
+            }
+        }
+        Ok(written)
     }
 
     fn at(root: PathBuf, place: &Place) -> Result<Self, Failure> {

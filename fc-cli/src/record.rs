@@ -10,7 +10,7 @@ use fc_spec::model::Model;
 use fc_workshop::recording::{Origin, Recorder};
 
 use crate::lang::{both, counted, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unwritable};
 use crate::place::Place;
 use crate::print;
 use crate::recording::Recording;
@@ -36,13 +36,7 @@ pub fn recorder<'m>(model: &'m Model, path: &Path) -> Result<Recorder<'m, File>,
         fingerprint: fingerprint(model),
         program: concat!("fcproto ", env!("CARGO_PKG_VERSION")).to_owned(),
     };
-    let file = File::create(path).map_err(|error| {
-        let path = path.display();
-        said!(
-            "无法写入 `{path}`：{error}",
-            "cannot write `{path}`: {error}"
-        )
-    })?;
+    let file = File::create(path).map_err(unwritable(path))?;
     Ok(Recorder::new(model, file, &origin)?)
 }
 

@@ -10,7 +10,7 @@ use fc_workshop::capture::Ports;
 use fc_workshop::decode::{self, DecodeError, Record, Source};
 
 use crate::lang::{both, in_lang, said};
-use crate::outcome::Failure;
+use crate::outcome::{Failure, unreadable};
 
 /// Options that name recorded bytes.
 #[derive(Debug, clap::Args)]
@@ -114,7 +114,7 @@ pub fn read_file<'m>(
     let input: Box<dyn Read + Send> = if file.as_os_str() == "-" {
         Box::new(io::stdin())
     } else {
-        Box::new(File::open(file).map_err(|error| cannot(file, &error))?)
+        Box::new(File::open(file).map_err(unreadable(file))?)
     };
     let source = Source {
         input,
@@ -126,20 +126,11 @@ pub fn read_file<'m>(
 
 fn failure(file: &Path, error: DecodeError) -> Failure {
     match error {
-        DecodeError::Read(error) => cannot(file, &error),
+        DecodeError::Read(error) => unreadable(file)(error),
         DecodeError::Input(error) => {
             let (file, error) = (file.display(), in_lang(error.text()));
             said!("`{file}`：{error}", "`{file}`: {error}").into()
         }
         DecodeError::Sink(error) => error.into(),
     }
-}
-
-fn cannot(file: &Path, error: &io::Error) -> Failure {
-    let file = file.display();
-    said!(
-        "无法读取 `{file}`：{error}",
-        "cannot read `{file}`: {error}"
-    )
-    .into()
 }

@@ -112,12 +112,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Ok(Status::Fine);
     }
     let mut written = write(&project, &shelf, &change.released, number, &sections)?;
-    for ((_, before), (_, file)) in spec.sources.iter().zip(change.sources.iter()) {
-        if file.text != before.text {
-            replace_spec_file(&project.root, &file.path, &file.text)?;
-            written.push(file.path.clone());
-        }
-    }
+    written.extend(project.write_changes(&spec.sources, &change.sources)?);
     let _ = writeln!(
         text,
         "{} {number}",

@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use fc_codegen::output::replace_spec_file;
 use fc_spec::model::{Lang, Text};
 use fc_spec::retire::retire;
 
@@ -90,11 +89,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         print::result(&(text + "\n"))?;
         return Ok(Status::Fine);
     }
-    for ((_, before), (_, file)) in spec.sources.iter().zip(after.sources.iter()) {
-        if file.text != before.text {
-            replace_spec_file(&project.root, &file.path, &file.text)?;
-        }
-    }
+    project.write_changes(&spec.sources, &after.sources)?;
     print::done(
         &(text
             + &said!(

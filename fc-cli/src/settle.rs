@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use fc_codegen::output::replace_spec_file;
 use fc_codegen::questions::read;
 use fc_spec::load::{Said, settle};
 use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
@@ -12,6 +11,7 @@ use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
+use crate::versions::today;
 use crate::{input, print};
 
 /// Options of `fcproto settle`.
@@ -139,11 +139,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec.show_faults()?;
         return Ok(spec.status());
     };
-    let before: Vec<_> = spec
-        .sources
-        .iter()
-        .map(|(_, file)| file.text.clone())
-        .collect();
+    let before = spec.sources.clone();
     let said = options.said(model)?;
     let mut diffs = String::new();
     let mut ids = Vec::new();
@@ -166,11 +162,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec = after;
     }
     if !options.dry_run {
-        for ((_, file), before) in spec.sources.iter().zip(&before) {
-            if file.text != *before {
-                replace_spec_file(&project.root, &file.path, &file.text)?;
-            }
-        }
+        project.write_changes(&before, &spec.sources)?;
     }
     let what = if options.dry_run {
         said!("将写下答复", "would settle")
@@ -221,8 +213,7 @@ fn rest(model: &Model, ids: &[String]) -> String {
 impl Options {
     /// Returns the answers from the command line or the sheet.
     fn said(&self, model: &Model) -> Result<Vec<Said>, Failure> {
-        let today = || jiff::Zoned::now().date().to_string();
-        let date = self.date.clone().unwrap_or_else(today);
+        let date = today(self.date.as_deref());
         if let Some(path) = &self.from {
             let sheet = input::text(path)?;
             let said =

@@ -8,7 +8,7 @@ use clap_complete::env::Shells;
 
 use crate::help::described;
 use crate::lang::{both, counted, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unwritable};
 use crate::print;
 
 /// Options of `fcproto completions`.
@@ -42,14 +42,8 @@ pub fn completions(options: &Completions) -> Result<Status, Failure> {
 pub fn man(options: &Man) -> Result<Status, Failure> {
     let directory = options.directory.as_path();
     let shown = directory.display();
-    let cannot = |error: std::io::Error| {
-        said!(
-            "无法写入 `{shown}`：{error}",
-            "cannot write to `{shown}`: {error}"
-        )
-    };
-    std::fs::create_dir_all(directory).map_err(cannot)?;
-    clap_mangen::generate_to(command(), directory).map_err(cannot)?;
+    std::fs::create_dir_all(directory).map_err(unwritable(directory))?;
+    clap_mangen::generate_to(command(), directory).map_err(unwritable(directory))?;
     let pages = pages(&command());
     let wrote = print::good(&said!("已写入", "wrote"));
     let pages = counted(pages, "页面", "page");

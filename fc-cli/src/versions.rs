@@ -7,7 +7,7 @@ use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gon
 use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{both, lang, said};
-use crate::outcome::Failure;
+use crate::outcome::{Failure, unreadable};
 use crate::place::Place;
 use crate::print;
 use crate::progress;
@@ -42,16 +42,9 @@ impl Shelf {
     }
 
     fn at(root: PathBuf, spec: PathBuf, packages: Packages) -> Result<Self, Failure> {
-        let releases = Releases::beside(&root.join(&spec)).map_err(|error| {
-            let directory = root.join(&spec).join(fc_diff::release::DIRECTORY);
-            {
-                let directory = directory.display();
-                said!(
-                    "无法读取 `{directory}`：{error}",
-                    "cannot read `{directory}`: {error}"
-                )
-            }
-        })?;
+        let home = root.join(&spec);
+        let directory = home.join(fc_diff::release::DIRECTORY);
+        let releases = Releases::beside(&home).map_err(unreadable(&directory))?;
         Ok(Self {
             root,
             spec,

@@ -11,7 +11,7 @@ use fc_spec::syntax::read_dir;
 
 use super::{git, spec_file};
 use crate::lang::{both, lang, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unreadable};
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
@@ -90,15 +90,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 
 impl Side {
     fn read(path: &Path, file: &str, hex: &str) -> Result<Self, Failure> {
-        let cannot = |error| {
-            said!(
-                "无法读取 `{file}`：{error}",
-                "cannot read `{file}`: {error}"
-            )
-        };
-        let text = match file {
-            NOTHING => None,
-            _ => Some(String::from_utf8_lossy(&fs::read(file).map_err(cannot)?).into_owned()),
+        let text = if file == NOTHING {
+            None
+        } else {
+            let bytes = fs::read(file).map_err(unreadable(Path::new(file)))?;
+            Some(String::from_utf8_lossy(&bytes).into_owned())
         };
         Ok(Self {
             path: path.to_owned(),

@@ -9,7 +9,7 @@ use fc_spec::merge::merge;
 
 use super::spec_file;
 use crate::lang::{both, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unreadable, unwritable};
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
@@ -83,26 +83,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 
 impl Options {
     fn texts(&self) -> Result<[String; 3], Failure> {
-        let read = |path: &Path| {
-            fs::read_to_string(path).map_err(|error| {
-                let path = path.display();
-                said!(
-                    "无法读取 `{path}`：{error}",
-                    "cannot read `{path}`: {error}"
-                )
-            })
-        };
+        let read = |path: &Path| fs::read_to_string(path).map_err(unreadable(path));
         Ok([read(&self.base)?, read(&self.ours)?, read(&self.theirs)?])
     }
 
     fn write(&self, text: &str) -> Result<Status, Failure> {
-        fs::write(&self.ours, text).map_err(|error| {
-            let path = self.ours.display();
-            said!(
-                "无法写入 `{path}`：{error}",
-                "cannot write `{path}`: {error}"
-            )
-        })?;
+        fs::write(&self.ours, text).map_err(unwritable(&self.ours))?;
         Ok(Status::Fine)
     }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::attributes::{DRIVER, missing};
 use super::git;
 use crate::lang::{both, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unwritable};
 use crate::place::Place;
 use crate::print;
 use crate::project::{Project, is_there};
@@ -159,12 +159,5 @@ fn write_hook(path: &Path, text: &str) -> Result<(), Failure> {
         use std::os::unix::fs::PermissionsExt as _;
         fs::set_permissions(path, fs::Permissions::from_mode(0o755))
     });
-    written.map_err(|error| {
-        let path = path.display();
-        said!(
-            "无法写入 `{path}`：{error}",
-            "cannot write `{path}`: {error}"
-        )
-        .into()
-    })
+    written.map_err(unwritable(path))
 }

@@ -1,7 +1,6 @@
 //! Usage errors in the language of the run.
 
 use std::error::Error as _;
-use std::fmt::Write as _;
 use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
@@ -213,14 +212,8 @@ fn in_backticks(tip: &str) -> String {
 
 /// `a`, `b`
 fn listed(names: &[String]) -> String {
-    let mut text = String::new();
-    for (index, name) in names.iter().enumerate() {
-        if index > 0 {
-            text += both("、", ", ");
-        }
-        let _ = write!(text, "`{name}`");
-    }
-    text
+    let names: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+    names.join(both("、", ", "))
 }
 
 fn word(error: &Error, kind: ContextKind) -> Option<String> {

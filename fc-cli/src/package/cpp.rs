@@ -4,12 +4,12 @@ use std::path::Path;
 
 use fc_codegen::version::Ecosystem;
 
+use super::Job;
 use super::sbom::{Component, Package, Packages};
 use super::tool::Tool;
-use super::{Job, files};
 use crate::input;
 use crate::lang::said;
-use crate::outcome::Failure;
+use crate::outcome::{Failure, unwritable};
 
 const CMAKE: Tool = Tool {
     name: "cmake",
@@ -58,7 +58,7 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
     };
     CPACK.run(&job.work, ["-G", forms, "-B", &out])?;
     let leftovers = job.out.join("_CPack_Packages");
-    std::fs::remove_dir_all(&leftovers).map_err(|error| files::unwritable(&leftovers, &error))?;
+    std::fs::remove_dir_all(&leftovers).map_err(unwritable(&leftovers))?;
     let config = input::file(&job.work.join("CPackConfig.cmake"))?;
     let mut dependencies = debian_dependencies(&config);
     dependencies.extend(cached("ASIO_INCLUDE:PATH=").and_then(|it| asio(Path::new(it))));

@@ -8,27 +8,17 @@ use toml_edit::DocumentMut;
 
 use crate::input;
 use crate::lang::said;
-use crate::outcome::Failure;
-
-/// Returns the message about a path that cannot be written.
-pub fn unwritable(path: &Path, error: &io::Error) -> Failure {
-    let path = path.display();
-    said!(
-        "无法写入 `{path}`：{error}",
-        "cannot write `{path}`: {error}"
-    )
-    .into()
-}
+use crate::outcome::{Failure, unwritable};
 
 /// Creates a directory with its parents, and returns its path.
 pub fn directory(path: &Path) -> Result<PathBuf, Failure> {
-    fs::create_dir_all(path).map_err(|error| unwritable(path, &error))?;
+    fs::create_dir_all(path).map_err(unwritable(path))?;
     Ok(path.to_owned())
 }
 
 /// Writes a file.
 pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
-    fs::write(path, contents).map_err(|error| unwritable(path, &error))
+    fs::write(path, contents).map_err(unwritable(path))
 }
 
 /// Returns the entries of a directory, sorted.

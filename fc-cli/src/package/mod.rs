@@ -23,7 +23,7 @@ use fc_spec::model::Model;
 
 use crate::generate;
 use crate::lang::{both, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unwritable};
 use crate::place::Place;
 use crate::project::Project;
 use crate::spec::Spec;
@@ -149,7 +149,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Ok(status);
     };
     let out = std::path::absolute(&options.out)?;
-    std::fs::create_dir_all(&out).map_err(|error| files::unwritable(&out, &error))?;
+    std::fs::create_dir_all(&out).map_err(unwritable(&out))?;
     let mut status = Status::Fine;
     for language in languages {
         let name = language.name();
@@ -201,7 +201,7 @@ fn pack(
 ) -> Result<String, Failure> {
     let product = language.product();
     // On the same file system as the result, so that files can be moved.
-    let work = tempfile::tempdir_in(out).map_err(|error| files::unwritable(out, &error))?;
+    let work = tempfile::tempdir_in(out).map_err(unwritable(out))?;
     let job = Job {
         project,
         product,

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use super::files;
 use crate::input;
-use crate::outcome::Failure;
+use crate::outcome::{Failure, unwritable};
 use crate::project::is_there;
 
 /// The name of the list.
@@ -59,7 +59,7 @@ pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, F
             files::directory(parent)?;
         }
         sums.insert(path.clone(), of_file(&from)?);
-        fs::rename(&from, &to).map_err(|error| files::unwritable(&to, &error))?;
+        fs::rename(&from, &to).map_err(unwritable(&to))?;
         listed.push(path);
     }
     let lines = sums.iter().map(|(path, sum)| format!("{sum}  {path}\n"));
@@ -72,7 +72,7 @@ fn remove(out: &Path, path: &str) -> Result<(), Failure> {
     let file = out.join(path);
     match fs::remove_file(&file) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(files::unwritable(&file, &error));
+            return Err(unwritable(&file)(error));
         }
         _ => {}
     }
