@@ -133,8 +133,9 @@ impl<'m> Between<'m> {
         let mut types = self.types.iter().filter(|(name, ..)| *name == owner);
         types.any(|(_, old, new)| match (&old.shape, &new.shape) {
             (TypeShape::Struct(old), TypeShape::Struct(new)) => {
-                let mut pairs = matching::fields(&old.fields, &new.fields).into_iter();
-                pairs.any(|pair| matches!(pair, Pair::Both(_, field) if field.wire == key))
+                let pairs = matching::fields(&old.fields, &new.fields);
+                let mut pairs = pairs.iter().filter_map(Pair::both);
+                pairs.any(|(_, field)| field.wire == key)
             }
             (TypeShape::Enum(old), TypeShape::Enum(new)) => {
                 let wire = new.values.iter().find(|it| it.name == key);

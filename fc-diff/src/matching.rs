@@ -6,8 +6,8 @@
 use crate::finding::Senders;
 use fc_spec::model::{Direction, WireForm};
 use fc_spec::model::{
-    EnvelopeField, Example, Field, Model, OneOf, Operation, ResultCode, Side, StructType, Type,
-    TypeDef, TypeId, TypeShape, Value, Variant,
+    EnvelopeField, Example, Field, Model, OneOf, Operation, ResultCode, Side, Type, TypeDef,
+    TypeId, TypeShape, Value, Variant,
 };
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -16,6 +16,16 @@ pub(crate) enum Pair<'m, T> {
     Both(&'m T, &'m T),
     Removed(&'m T),
     Added(&'m T),
+}
+
+impl<'m, T> Pair<'m, T> {
+    /// Returns both versions of an item, or `None` if only one model has it.
+    pub(crate) fn both(&self) -> Option<(&'m T, &'m T)> {
+        match self {
+            Self::Both(old, new) => Some((old, new)),
+            Self::Removed(_) | Self::Added(_) => None,
+        }
+    }
 }
 
 /// Pairs the operations.
@@ -138,6 +148,7 @@ pub(crate) fn envelope(keys: &[EnvelopeField]) -> Vec<Field> {
 }
 
 /// A type of the old version and its counterpart.
+#[derive(Clone, Copy)]
 pub(crate) struct TypePair<'m> {
     pub(crate) old: &'m TypeDef,
     pub(crate) new: &'m TypeDef,
@@ -175,18 +186,13 @@ pub(crate) fn types<'m>(
     operations: &[Pair<'m, Operation>],
 ) -> TypePairs<'m> {
     let mut walk = Walk {
-        old,
-        new,
+        old: &old.types,
+        new: &new.types,
         found: BTreeMap::new(),
         open: Vec::new(),
     };
-    for pair in operations {
-        let Pair::Both(one, other) = pair else {
-            continue;
-        };
-        if one.kind() != other.kind() {
-            continue;
-        }
+    let operations = operations.iter().filter_map(Pair::both);
+    for (one, other) in operations.filter(|(one, other)| one.kind() == other.kind()) {
         for direction in Direction::ALL {
             if let (Some(old), Some(new)) = (one.body(*direction), other.body(*direction)) {
                 walk.meet(
@@ -210,60 +216,46 @@ pub(crate) fn types<'m>(
         }
     }
     walk.run();
-    let mut by_name: HashMap<&str, usize> = HashMap::new();
-    for (index, ty) in new.types.iter().enumerate() {
-        by_name.insert(&ty.name, index);
-    }
+    let names = new.types.iter().zip(0..);
+    let by_name: HashMap<&str, usize> = names.map(|(ty, at)| (&*ty.name, at)).collect();
     // Types outside messages match by name.
-    let met: HashSet<usize> = walk.found.keys().map(|(old, _)| *old).collect();
     for (index, ty) in old.types.iter().enumerate() {
         if let Some(other) = by_name.get(ty.name.as_str())
-            && !met.contains(&index)
+            && !walk.has_met(index)
         {
             walk.meet_at(index, *other, Senders::default());
         }
     }
     walk.run();
-    let met: HashSet<usize> = walk.found.keys().map(|(old, _)| *old).collect();
     let met_new: HashSet<usize> = walk.found.keys().map(|(_, new)| *new).collect();
-    let alone = |model: &'m Model, met: &HashSet<usize>| {
-        let types = model.types.iter().enumerate();
-        types
-            .filter(|(index, _)| !met.contains(index))
-            .map(|(_, ty)| ty)
-            .collect()
-    };
-    let (removed, added) = (alone(old, &met), alone(new, &met_new));
+    let removed = walk
+        .old
+        .iter()
+        .zip(0..)
+        .filter(|(_, at)| !walk.has_met(*at));
+    let added = walk
+        .new
+        .iter()
+        .zip(0..)
+        .filter(|(_, at)| !met_new.contains(at));
     let both = walk.found.iter().filter_map(|((one, other), senders)| {
         Some(TypePair {
-            old: old.types.get_at(*one)?,
-            new: new.types.get_at(*other)?,
+            old: walk.old.get(*one)?,
+            new: walk.new.get(*other)?,
             senders: *senders,
         })
     });
     TypePairs {
         both: both.collect(),
-        removed,
-        added,
-    }
-}
-
-/// Looks a type up by its index.
-trait At {
-    fn get_at(&self, index: usize) -> Option<&TypeDef>;
-}
-
-impl At for fc_spec::model::Types {
-    fn get_at(&self, index: usize) -> Option<&TypeDef> {
-        let types: &[TypeDef] = self;
-        types.get(index)
+        removed: removed.map(|(ty, _)| ty).collect(),
+        added: added.map(|(ty, _)| ty).collect(),
     }
 }
 
 /// Walks two models in parallel, from message to message.
 struct Walk<'m> {
-    old: &'m Model,
-    new: &'m Model,
+    old: &'m [TypeDef],
+    new: &'m [TypeDef],
     found: BTreeMap<(usize, usize), Senders>,
     open: Vec<(usize, usize, Senders)>,
 }
@@ -281,22 +273,26 @@ impl Walk<'_> {
         }
     }
 
+    /// Returns `true` if the old type with this index has a counterpart.
+    fn has_met(&self, old: usize) -> bool {
+        self.found
+            .range((old, 0)..=(old, usize::MAX))
+            .next()
+            .is_some()
+    }
+
     fn run(&mut self) {
-        let (old_model, new_model) = (self.old, self.new);
         while let Some((old, new, senders)) = self.open.pop() {
-            let (Some(old), Some(new)) = (old_model.types.get_at(old), new_model.types.get_at(new))
-            else {
+            let (Some(old), Some(new)) = (self.old.get(old), self.new.get(new)) else {
                 continue;
             };
             match (&old.shape, &new.shape) {
                 (TypeShape::Struct(old), TypeShape::Struct(new)) => {
-                    self.meet_structs(old, new, senders);
+                    self.meet_fields(&old.fields, &new.fields, senders);
                 }
                 (TypeShape::OneOf(old), TypeShape::OneOf(new)) => {
-                    for pair in variants(old, new) {
-                        if let Pair::Both(old, new) = pair {
-                            self.meet(old.ty.id(), new.ty.id(), senders);
-                        }
+                    for (old, new) in variants(old, new).iter().filter_map(Pair::both) {
+                        self.meet(old.ty.id(), new.ty.id(), senders);
                     }
                 }
                 _ => {}
@@ -304,17 +300,11 @@ impl Walk<'_> {
         }
     }
 
-    fn meet_structs(&mut self, old: &StructType, new: &StructType, senders: Senders) {
-        self.meet_fields(&old.fields, &new.fields, senders);
-    }
-
     fn meet_fields(&mut self, old: &[Field], new: &[Field], senders: Senders) {
-        for pair in fields(old, new) {
-            if let Pair::Both(old, new) = pair
-                && let Some((one, other)) = named(&old.ty, &new.ty)
-            {
-                self.meet(one, other, senders);
-            }
+        let pairs = fields(old, new);
+        let pairs = pairs.iter().filter_map(Pair::both);
+        for (one, other) in pairs.filter_map(|(old, new)| named(&old.ty, &new.ty)) {
+            self.meet(one, other, senders);
         }
     }
 }

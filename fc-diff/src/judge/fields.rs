@@ -51,11 +51,8 @@ impl Judge<'_> {
     /// Reports members of a C++ struct that change their position. Removed fields already break sources in C++.
     fn member_order(&mut self, here: &Here, list: &Path, old: &[Field], new: &[Field]) {
         let pairs = matching::fields(old, new);
-        let kept = pairs.iter().filter_map(|pair| match pair {
-            Pair::Both(_, field) => Some(field.wire.as_str()),
-            Pair::Removed(_) | Pair::Added(_) => None,
-        });
-        let kept: Vec<&str> = kept.collect();
+        let kept = pairs.iter().filter_map(Pair::both);
+        let kept: Vec<&str> = kept.map(|(_, field)| field.wire.as_str()).collect();
         let is_kept = |wire: &&str| kept.contains(wire);
         let wires = || new.iter().map(|it| it.wire.as_str());
         let now: Vec<&str> = wires().filter(is_kept).collect();

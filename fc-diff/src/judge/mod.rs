@@ -39,7 +39,7 @@ struct Judge<'m> {
     new: &'m Model,
     packages: Packages,
     /// New names of operations by their old names.
-    new_names: HashMap<&'m str, String>,
+    new_names: HashMap<&'m str, &'m str>,
     operations: Vec<Pair<'m, Operation>>,
     types: TypePairs<'m>,
     found: Vec<Finding>,
@@ -66,10 +66,8 @@ impl<'m> Judge<'m> {
     fn of(old: &'m Model, new: &'m Model, packages: Packages) -> Self {
         let operations = matching::operations(old, new);
         let types = matching::types(old, new, &operations);
-        let names = operations.iter().filter_map(|pair| match pair {
-            Pair::Both(one, other) => Some((one.name.as_str(), other.name.clone())),
-            Pair::Removed(_) | Pair::Added(_) => None,
-        });
+        let names = operations.iter().filter_map(Pair::both);
+        let names = names.map(|(one, other)| (one.name.as_str(), other.name.as_str()));
         Self {
             old,
             new,

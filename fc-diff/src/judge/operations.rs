@@ -3,7 +3,7 @@
 use super::frame::both;
 use super::{Judge, called};
 use crate::finding::{Finding, Senders};
-use crate::matching::{self, Pair};
+use crate::matching::{self, Pair, TypePair};
 use crate::rule::{Language, Rule, Wire};
 use crate::rules::fields::{NAME_CHANGED, TYPE_CHANGED};
 use crate::rules::operations as rules;
@@ -175,12 +175,10 @@ impl<'m> Judge<'m> {
 
     /// Judges the declared errors, paired as their results are.
     fn errors(&mut self, old: &Operation, new: &Operation) {
-        let results = matching::results(self.old, self.new).into_iter();
-        let results = results.filter_map(|pair| match pair {
-            Pair::Both(one, other) => Some((one.code, other.code)),
-            Pair::Removed(_) | Pair::Added(_) => None,
-        });
-        let results: HashMap<i64, i64> = results.collect();
+        let results = matching::results(self.old, self.new);
+        let results = results.iter().filter_map(Pair::both);
+        let results: HashMap<i64, i64> =
+            results.map(|(one, other)| (one.code, other.code)).collect();
         let name = new.name.as_str();
         let has_type = |it: &Operation| it.kind() == Kind::Command && !it.errors.is_empty();
         let mut kept = Vec::new();
@@ -228,8 +226,8 @@ impl<'m> Judge<'m> {
 
     /// Judges the reports that a command sets off.
     fn sets_off(&mut self, old: &Operation, new: &Operation) {
-        let name = |report: &str| -> String {
-            let new_name = self.new_names.get(report).map(String::as_str);
+        let name = |report: &str| {
+            let new_name = self.new_names.get(report).copied();
             new_name.unwrap_or(report).to_owned()
         };
         let before: Vec<String> = old.sets_off().iter().map(|it| name(&it.report)).collect();
@@ -323,13 +321,7 @@ impl<'m> Judge<'m> {
     /// Judges renamed types, and claims the types without a counterpart.
     pub(super) fn renamed_types(&mut self) {
         use crate::rules::fields::TYPE_RENAMED;
-        let pairs: Vec<_> = self
-            .types
-            .both
-            .iter()
-            .map(|pair| (pair.old, pair.new))
-            .collect();
-        for (old, new) in pairs {
+        for TypePair { old, new, .. } in self.types.both.clone() {
             if old.name == new.name {
                 continue;
             }

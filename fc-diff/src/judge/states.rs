@@ -18,18 +18,13 @@ impl Judge<'_> {
         [old, new]: [&EnumType; 2],
         pairs: &[Pair<'_, EnumValue>],
     ) {
-        let names: BTreeMap<&str, &str> = pairs
-            .iter()
-            .filter_map(|pair| match pair {
-                Pair::Both(one, other) => Some((one.name.as_str(), other.name.as_str())),
-                Pair::Removed(_) | Pair::Added(_) => None,
-            })
+        let pairs: Vec<_> = pairs.iter().filter_map(Pair::both).collect();
+        let names = pairs.iter();
+        let names: BTreeMap<&str, &str> = names
+            .map(|(one, other)| (&*one.name, &*other.name))
             .collect();
         let mut changed = Vec::new();
-        for pair in pairs {
-            let Pair::Both(one, other) = pair else {
-                continue;
-            };
+        for (one, other) in &pairs {
             let kept = |then: &[String]| -> Vec<String> {
                 let kept = then.iter().filter_map(|name| names.get(name.as_str()));
                 kept.map(|name| (*name).to_owned()).collect()
@@ -62,11 +57,9 @@ impl Judge<'_> {
             self.claim_in(&here.path, &["order"]);
         }
         // This finding covers the marks, or the one about a new or removed value does.
-        for pair in pairs {
-            if let Pair::Both(_, other) = pair {
-                for key in ["then", "final", "error"] {
-                    self.claim_in(&here.path, &["values", &other.name, key]);
-                }
+        for (_, other) in pairs {
+            for key in ["then", "final", "error"] {
+                self.claim_in(&here.path, &["values", &other.name, key]);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Judge, Path, called, json};
 use crate::finding::{Finding, Senders};
-use crate::matching::{self, Pair};
+use crate::matching::{self, Pair, TypePair};
 use crate::rule::{Language, Wire};
 use crate::rules::choices as rules;
 use crate::rules::fields::{NAME_CHANGED, NUMBER_NARROWED, NUMBER_WIDENED, TYPE_CHANGED};
@@ -22,16 +22,10 @@ pub(super) struct Here {
     pub(super) owners: [String; 2],
 }
 
-impl<'m> Judge<'m> {
+impl Judge<'_> {
     pub(super) fn types(&mut self) {
-        let pairs: Vec<(&'m TypeDef, &'m TypeDef, Senders)> = self
-            .types
-            .both
-            .iter()
-            .map(|pair| (pair.old, pair.new, pair.senders))
-            .collect();
         self.renamed_types();
-        for (old, new, senders) in pairs {
+        for TypePair { old, new, senders } in self.types.both.clone() {
             let here = Here {
                 subject: called(new),
                 path: vec!["types".to_owned(), new.name.clone()],
