@@ -2,7 +2,7 @@
 
 use crate::rule::{About, Language, Rule, Wire};
 use crate::rules::operations::{CODE_ASSIGNED, COMMAND_ADDED, REPORT_ADDED};
-use fc_spec::model::{Side, Text, Waiver, fingerprint};
+use fc_spec::model::{Operation, Side, Text, Waiver, fingerprint};
 use serde::{Serialize, Serializer, ser::SerializeStruct as _};
 
 /// A combination of versions in the field: one end has the old version, the other the new one.
@@ -128,6 +128,22 @@ impl Finding {
         }
     }
 
+    /// Returns a finding about a thing that only one version has: the old one if it was `removed`. The message shows
+    /// `value`.
+    pub(crate) fn alone(
+        rule: &'static Rule,
+        removed: bool,
+        subject: impl Into<String>,
+        value: &str,
+        (kind, name): (&'static str, impl Into<String>),
+    ) -> Self {
+        if removed {
+            Self::new(rule, subject, [value, ""]).was(kind, name)
+        } else {
+            Self::new(rule, subject, ["", value]).is(kind, name)
+        }
+    }
+
     /// Returns the id for a waiver, such as `FC0725-1a2b3c4d5e6f`.
     #[must_use]
     pub fn waiver_id(&self) -> String {
@@ -166,6 +182,12 @@ impl Finding {
         self
     }
 
+    /// Keeps the languages of the rule only if sources break.
+    pub(crate) fn source_if(mut self, breaks: bool) -> Self {
+        self.source.retain(|_| breaks);
+        self
+    }
+
     /// Sets `behaviour`, if it differs from that of the rule.
     pub(crate) fn behaviour(mut self, behaviour: bool) -> Self {
         self.behaviour = behaviour;
@@ -196,6 +218,12 @@ impl Finding {
     pub(crate) fn at(self, kind: &'static str, name: impl Into<String>) -> Self {
         let name = name.into();
         self.was(kind, name.clone()).is(kind, name)
+    }
+
+    /// Adds the two versions of an operation.
+    pub(crate) fn between(self, old: &Operation, new: &Operation) -> Self {
+        self.was(old.kind().name(), &old.name)
+            .is(new.kind().name(), &new.name)
     }
 }
 

@@ -29,7 +29,8 @@ pub(super) fn interval(ty: &Type, details: &FieldDetails) -> Option<Interval> {
     Some((least, most))
 }
 
-fn of_integers(kind: IntKind) -> Interval {
+/// Returns the numbers that a type of integers holds.
+pub(super) fn of_integers(kind: IntKind) -> Interval {
     let (least, most) = kind.range();
     (Some(Number::Int(least)), Some(Number::Int(most)))
 }

@@ -25,16 +25,11 @@ impl<'m> Judge<'m> {
         let values = values.map(|it| it.join(", "));
         let subject = format!("codes.{}", RangeUse::PassThrough.name());
         let finding = Finding::new(&rules::PASS_THROUGH, subject, both(&values));
-        let source = if is_lost {
-            rules::PASS_THROUGH.source
-        } else {
-            &[]
-        };
         let all = |of: BTreeMap<String, &CodeRange>| -> Vec<CodeRange> {
             of.into_values().cloned().collect()
         };
         let (old, new) = (all(old), all(new));
-        let mut finding = finding.source(source);
+        let mut finding = finding.source_if(is_lost);
         for range in &old {
             finding = finding.was("range", span(range));
         }
@@ -72,12 +67,7 @@ impl<'m> Judge<'m> {
             finding.on(asks, Wire::NewSender)
         } else {
             let is_sent = new.code.value.is_some();
-            let source = if is_sent {
-                &[]
-            } else {
-                rules::CODE_CHANGED.source
-            };
-            let finding = Finding::new(&rules::CODE_CHANGED, name, values).source(source);
+            let finding = Finding::new(&rules::CODE_CHANGED, name, values).source_if(!is_sent);
             finding.on(Senders::of(old.sender), Wire::of(true, is_sent))
         };
         self.report(finding.at(new.kind().name(), name));
@@ -99,35 +89,26 @@ impl<'m> Judge<'m> {
             .collect();
         let retired = by(&self.old.retired, |it| it.code);
         let names = by(&self.old.operations, |it| it.name.as_str());
-        let mut findings = Vec::new();
         for operation in &self.new.operations {
             let Some(code) = operation.code.value else {
                 continue;
             };
+            let (name, spelling) = (operation.name.as_str(), operation.code.spelling.as_str());
+            let holder = before.get(&(operation.kind(), code));
+            let is_renamed = holder.is_some_and(|it| {
+                let mut renames = self.account.renames.values();
+                renames.any(|names| names.get(&it.name).is_some_and(|new| new == name))
+            });
             let had = names
-                .get(operation.name.as_str())
+                .get(name)
                 .is_some_and(|it| it.code.value == Some(code));
-            let name = operation.name.as_str();
-            let spelling = operation.code.spelling.as_str();
-            let is_new = !had
-                && !before.get(&(operation.kind(), code)).is_some_and(|it| {
-                    self.account
-                        .renames
-                        .values()
-                        .any(|names| names.get(&it.name).is_some_and(|new| new == name))
-                });
-            let earlier = before
-                .get(&(operation.kind(), code))
-                .map(|it| it.name.as_str());
+            let earlier = holder.map(|it| it.name.as_str());
             let earlier = earlier.or_else(|| retired.get(&code).map(|it| it.text.en.as_str()));
-            if let (true, Some(earlier)) = (is_new, earlier) {
+            if let Some(earlier) = earlier.filter(|_| !had && !is_renamed) {
                 let finding = Finding::new(&rules::CODE_REUSED, spelling, [earlier, name]);
                 let finding = finding.was("", earlier).was("retired code", spelling);
-                findings.push(
-                    finding
-                        .is(operation.kind().name(), name)
-                        .on(Senders::of(operation.sender), Wire::Both),
-                );
+                let finding = finding.is(operation.kind().name(), name);
+                self.report(finding.on(Senders::of(operation.sender), Wire::Both));
             }
         }
         let kept = by(&self.new.retired, |it| it.code);
@@ -135,17 +116,11 @@ impl<'m> Judge<'m> {
             if !kept.contains_key(&tombstone.code) {
                 let code = tombstone.code.to_string();
                 let spelling = tombstone.spelling.as_str();
-                let finding = Finding::new(
-                    &rules::TOMBSTONE_REMOVED,
-                    spelling,
-                    [&tombstone.text.en, ""],
-                );
-                findings.push(finding.was("retired code", spelling));
+                let (rule, what) = (&rules::TOMBSTONE_REMOVED, &tombstone.text.en);
+                let place = ("retired code", spelling);
+                self.report(Finding::alone(rule, true, spelling, what, place));
                 self.claim(&["retired_codes", &code]);
             }
-        }
-        for finding in findings {
-            self.report(finding);
         }
         let (old, new) = (self.old.calls.ack, self.new.calls.ack);
         if old != new {

@@ -1,8 +1,9 @@
 //! Judges fields: their keys, types and forms.
 
+use super::accept::{self, Interval};
 use super::frame::both;
 use super::types::Here;
-use super::{Judge, Path, accept, sources};
+use super::{Judge, ORDER, Path, sources};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair};
 use crate::rule::{Language, Rule, Wire};
@@ -23,27 +24,16 @@ pub(super) struct Fields<'f> {
 impl Fields<'_> {
     /// Returns a finding about the field.
     pub(super) fn found(&self, rule: &'static Rule, values: [&str; 2], wire: Wire) -> Finding {
-        let [old, new] = &self.here.owners;
-        Finding::new(
-            rule,
-            format!("{}.{}", self.here.subject, self.new.wire),
-            values,
-        )
-        .was("field", format!("{old}.{}", self.old.wire))
-        .is("field", format!("{new}.{}", self.new.wire))
-        .on(self.here.senders, wire)
+        let keys = [&*self.old.wire, &*self.new.wire];
+        let finding = self.here.part(rule, "field", keys, values);
+        finding.on(self.here.senders, wire)
     }
 }
 
 impl Judge<'_> {
     /// Judges the fields of an object.
     pub(super) fn object(&mut self, here: &Here, old: &[Field], new: &[Field]) {
-        let list: Path = here
-            .path
-            .iter()
-            .cloned()
-            .chain(["fields".to_owned()])
-            .collect();
+        let list = here.list("fields");
         self.fields_in(here, &list, old, new);
         self.member_order(here, &list, old, new);
     }
@@ -75,9 +65,8 @@ impl Judge<'_> {
         };
         let values = [moved(&kept), moved(&now)];
         let finding = Finding::new(&rules::MEMBER_ORDER, &here.subject, both(&values));
-        let [one, other] = &here.owners;
-        self.report(finding.was("", one).is("", other));
-        self.claim_in(list, &["#order"]);
+        self.report(here.owned("", finding));
+        self.claim_in(list, &[ORDER]);
     }
 
     /// Judges the keys of the envelope, which every message has.
@@ -95,13 +84,8 @@ impl Judge<'_> {
                 owners: [subject.clone(), subject.clone()],
                 subject,
             };
-            let list = here.path.clone();
-            self.fields_in(
-                &here,
-                &list,
-                &matching::envelope(old),
-                &matching::envelope(new),
-            );
+            let (old, new) = (matching::envelope(old), matching::envelope(new));
+            self.fields_in(&here, &here.path, &old, &new);
         }
         // The runtime builds the envelopes, so programs need no new keys. C++ has no types for envelopes.
         for finding in self.found.iter_mut().skip(first) {
@@ -114,10 +98,10 @@ impl Judge<'_> {
 
     fn fields_in(&mut self, here: &Here, list: &Path, old: &[Field], new: &[Field]) {
         for pair in matching::fields(old, new) {
-            match pair {
+            let (field, removed) = match pair {
                 Pair::Both(old, new) => {
                     if old.wire != new.wire {
-                        self.renamed_in(list, &old.wire, &new.wire);
+                        self.renamed(list, &old.wire, &new.wire);
                     }
                     let path = list.iter().cloned().chain([new.wire.clone()]).collect();
                     self.field(&Fields {
@@ -126,35 +110,20 @@ impl Judge<'_> {
                         here,
                         path,
                     });
+                    continue;
                 }
-                Pair::Removed(field) => {
-                    let (rule, wire) = if field.optional {
-                        (&rules::OPTIONAL_REMOVED, Wire::Fine)
-                    } else {
-                        (&rules::REQUIRED_REMOVED, Wire::NewSender)
-                    };
-                    let subject = format!("{}.{}", here.subject, field.wire);
-                    let finding = Finding::new(rule, subject, [&field.wire, ""]);
-                    let finding =
-                        finding.was("field", format!("{}.{}", here.owners[0], field.wire));
-                    self.report(finding.on(here.senders, wire));
-                    self.claim_in(list, &[&field.wire]);
-                    self.claim_in(list, &["#order"]);
-                }
-                Pair::Added(field) => {
-                    let (rule, wire) = if field.optional {
-                        (&rules::OPTIONAL_ADDED, Wire::Fine)
-                    } else {
-                        (&rules::REQUIRED_ADDED, Wire::OldSender)
-                    };
-                    let subject = format!("{}.{}", here.subject, field.wire);
-                    let finding = Finding::new(rule, subject, ["", &field.wire]);
-                    let finding = finding.is("field", format!("{}.{}", here.owners[1], field.wire));
-                    self.report(finding.on(here.senders, wire));
-                    self.claim_in(list, &[&field.wire]);
-                    self.claim_in(list, &["#order"]);
-                }
-            }
+                Pair::Removed(field) => (field, true),
+                Pair::Added(field) => (field, false),
+            };
+            let (rule, wire) = match (field.optional, removed) {
+                (true, true) => (&rules::OPTIONAL_REMOVED, Wire::Fine),
+                (true, false) => (&rules::OPTIONAL_ADDED, Wire::Fine),
+                (false, true) => (&rules::REQUIRED_REMOVED, Wire::NewSender),
+                (false, false) => (&rules::REQUIRED_ADDED, Wire::OldSender),
+            };
+            let finding = here.alone(rule, removed, ("field", &field.wire), &field.wire);
+            self.report(finding.on(here.senders, wire));
+            self.claim_item(list, &field.wire);
         }
     }
 
@@ -196,13 +165,9 @@ impl Judge<'_> {
             self.report(it.found(&rules::UNIT, values, wire));
             self.claim_in(&it.path, &["unit"]);
         }
-        let subject = format!("{}.{}", it.here.subject, new.wire);
         let systems = [&details.coordinates, &others.coordinates];
-        if let Some(finding) = self.coordinates(subject, systems) {
-            let [one, other] = &it.here.owners;
-            let finding = finding.was("field", format!("{one}.{}", old.wire));
-            let finding = finding.is("field", format!("{other}.{}", new.wire));
-            self.report(finding.on(it.here.senders, Wire::Both));
+        if let Some(values) = self.other_coordinates(systems) {
+            self.report(it.found(&rules::COORDINATES, values, Wire::Both));
             self.claim_in(&it.path, &["coordinates"]);
         }
         self.reference(it);
@@ -269,21 +234,22 @@ impl Judge<'_> {
             accept::interval(types.0, old.details()),
             accept::interval(types.1, new.details()),
         );
+        let wire = |one: &Interval, other: &Interval| {
+            Wire::of(!accept::within(one, other), !accept::within(other, one))
+        };
         let source = sources::changed(old, new);
         let finding = match (types, intervals) {
             ((Type::TimestampMs, Type::TimestampS) | (Type::TimestampS, Type::TimestampMs), _) => {
                 it.found(&rules::TIME_UNIT, values, Wire::Both)
             }
             ((Type::Int(one), Type::Int(other)), (Some(old), Some(new))) => {
-                let (from, to) = (one.range(), other.range());
-                let is_wider = to.0 <= from.0 && from.1 <= to.1;
-                let rule = if is_wider {
+                let (from, to) = (accept::of_integers(*one), accept::of_integers(*other));
+                let rule = if accept::within(&from, &to) {
                     &rules::NUMBER_WIDENED
                 } else {
                     &rules::NUMBER_NARROWED
                 };
-                let wire = Wire::of(!accept::within(&old, &new), !accept::within(&new, &old));
-                it.found(rule, values, wire)
+                it.found(rule, values, wire(&old, &new))
             }
             ((Type::Float(one), Type::Float(_)), _) => match one {
                 FloatKind::F32 => it.found(&rules::NUMBER_WIDENED, values, Wire::NewSender),
@@ -298,28 +264,25 @@ impl Judge<'_> {
             ((Type::Json, _), _) => it.found(&rules::JSON_TYPED, values, Wire::OldSender),
             // A timestamp and an integer.
             (_, (Some(one), Some(other))) => {
-                let wire = Wire::of(!accept::within(&one, &other), !accept::within(&other, &one));
-                it.found(&rules::TYPE_CHANGED, values, wire)
+                it.found(&rules::TYPE_CHANGED, values, wire(&one, &other))
             }
             ((one, other), _) => it.found(&rules::TYPE_CHANGED, values, accept::types(one, other)),
         };
         self.report(finding.source(source));
     }
 
-    /// Returns a finding if positions are in another coordinate system. A renamed system is the same.
-    pub(super) fn coordinates(
+    /// Returns the coordinate systems if positions are in another one. A renamed system is the same.
+    pub(super) fn other_coordinates<'s>(
         &self,
-        subject: String,
-        systems: [&Option<String>; 2],
-    ) -> Option<Finding> {
+        systems: [&'s Option<String>; 2],
+    ) -> Option<[&'s str; 2]> {
         let [Some(old), Some(new)] = systems else {
             return None;
         };
         let has =
             |model: &Model, name: &String| model.coordinates.iter().any(|it| it.name == *name);
         let is_renamed = !has(self.new, old) && !has(self.old, new);
-        let is_other = old != new && !is_renamed;
-        is_other.then(|| Finding::new(&rules::COORDINATES, subject, [old, new]))
+        (old != new && !is_renamed).then_some([old, new])
     }
 
     /// Judges the entity to which a field refers.

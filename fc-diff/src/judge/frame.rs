@@ -1,13 +1,13 @@
 //! Judges the frame and the transport.
 
-use super::{Judge, shown};
+use super::{Judge, ORDER, shown};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair};
 use crate::rule::{Language, Wire};
 use crate::rules::fields::NAME_CHANGED;
 use crate::rules::frame as rules;
 use crate::rules::results::QUIRK_REMOVED;
-use fc_spec::model::{HeaderField, KindRole};
+use fc_spec::model::{Encoding, HeaderField, KindRole};
 
 impl Judge<'_> {
     pub(super) fn frame(&mut self) {
@@ -119,21 +119,16 @@ impl Judge<'_> {
                 // A new or moved field does not change the type of any Rust field.
                 let ty = |field: Option<&HeaderField>| field.map(|it| it.ty);
                 let is_other = one.is_some() && ty(one) != ty(other);
-                let source = if is_other {
-                    rules::HEADER_LAYOUT.source
-                } else {
-                    &[]
-                };
-                let finding = finding.source(source);
+                let finding = finding.source_if(is_other);
                 self.report(at(finding).on(Senders::BOTH, Wire::Both));
-                self.claim(&["protocol", "frame", "header", "#order"]);
+                self.claim_in(&list, &[ORDER]);
                 match (one, other) {
                     (Some(_), Some(other)) => {
                         for key in ["type", "offset"] {
-                            self.claim(&["protocol", "frame", "header", &other.wire, key]);
+                            self.claim_in(&list, &[&other.wire, key]);
                         }
                     }
-                    _ => self.claim(&["protocol", "frame", "header", &field.wire]),
+                    _ => self.claim_in(&list, &[&field.wire]),
                 }
             }
             let (Some(one), Some(other)) = (one, other) else {
@@ -147,18 +142,19 @@ impl Judge<'_> {
                 self.report(at(finding).source([Language::Rust]));
                 // The code name comes from the wire name.
                 for key in ["name", "wire"] {
-                    self.claim(&["protocol", "frame", "header", &other.wire, key]);
+                    self.claim_in(&list, &[&other.wire, key]);
                 }
             }
             for quirk in one.quirks.iter().filter(|it| !other.quirks.contains(it)) {
                 let finding = Finding::new(&QUIRK_REMOVED, &subject, [quirk.name(), ""]);
                 self.report(at(finding).on(Senders::BOTH, Wire::OldSender));
-                self.claim(&["protocol", "frame", "header", &other.wire, "quirks"]);
+                self.claim_in(&list, &[&other.wire, "quirks"]);
             }
         }
     }
 
     fn kinds(&mut self) {
+        let list = ["protocol", "frame", "kinds"];
         let (old, new) = (&self.old.frame.kinds, &self.new.frame.kinds);
         for (one, other) in [
             (&old.stream, &new.stream),
@@ -174,80 +170,59 @@ impl Judge<'_> {
                     .was("frame kind", &values[0])
                     .is("frame kind", &values[1]);
                 self.report(finding.on(Senders::BOTH, Wire::Both));
-                self.claim(&["protocol", "frame", "kinds", &values[0]]);
-                self.claim(&["protocol", "frame", "kinds", &values[1]]);
-                self.claim(&["protocol", "frame", "kinds", "#order"]);
+                self.claim_in(&list, &[&values[0]]);
+                self.claim_item(&list, &values[1]);
             }
             if old.reserved.iter().any(|it| it.value == other.value) {
                 let subject = format!("frame.kinds.{}", other.value);
-                let finding = Finding::new(
-                    &rules::RESERVED_KIND,
-                    subject,
-                    [KindRole::Reserved.name(), role],
-                );
+                let roles = [KindRole::Reserved.name(), role];
+                let finding = Finding::new(&rules::RESERVED_KIND, subject, roles);
                 let finding = finding.at("frame kind", &values[1]);
                 self.report(finding.on(Senders::BOTH, Wire::NewSender));
             }
             if one.port != other.port {
                 let values = [one.port.name(), other.port.name()];
-                let finding = Finding::new(
-                    &rules::OPERATION_PORT,
-                    format!("frame.kinds.{role}"),
-                    values,
-                );
-                let finding = finding.at("frame kind", other.value.to_string());
+                let value = other.value.to_string();
+                let subject = format!("frame.kinds.{role}");
+                let finding = Finding::new(&rules::OPERATION_PORT, subject, values);
+                let finding = finding.at("frame kind", &value);
                 self.report(finding.on(Senders::BOTH, Wire::Both));
-                self.claim(&[
-                    "protocol",
-                    "frame",
-                    "kinds",
-                    &other.value.to_string(),
-                    "port",
-                ]);
+                self.claim_in(&list, &[&value, "port"]);
             }
         }
         for kind in &old.reserved {
             if new.with_value(kind.value).is_none() {
                 let value = kind.value.to_string();
-                let finding = Finding::new(
+                let subject = format!("frame.kinds.{value}");
+                let named = ("frame kind", &value);
+                self.report(Finding::alone(
                     &rules::KIND_VALUE,
-                    format!("frame.kinds.{value}"),
-                    [&kind.name, ""],
-                );
-                self.report(finding.was("frame kind", &value));
-                self.claim(&["protocol", "frame", "kinds", &value]);
+                    true,
+                    subject,
+                    &kind.name,
+                    named,
+                ));
+                self.claim_in(&list, &[&value]);
             }
         }
     }
 
     fn encodings(&mut self) {
         let (old, new) = (&self.old.frame, &self.new.frame);
-        for (rule, wire, from, to) in [
-            (&rules::ENCODING_REMOVED, Wire::OldSender, old, new),
-            (&rules::ENCODING_ADDED, Wire::NewSender, new, old),
+        for (rule, removed, from, to) in [
+            (&rules::ENCODING_REMOVED, true, old, new),
+            (&rules::ENCODING_ADDED, false, new, old),
         ] {
-            for encoding in &from.encodings {
-                if to
-                    .encoding(encoding.role)
-                    .is_none_or(|it| it.value != encoding.value)
-                {
-                    let value = encoding.value.to_string();
-                    let role = encoding.role.name();
-                    let values = if wire == Wire::OldSender {
-                        [value.as_str(), ""]
-                    } else {
-                        ["", value.as_str()]
-                    };
-                    let finding = Finding::new(rule, format!("frame.encodings.{role}"), values);
-                    let finding = if wire == Wire::OldSender {
-                        finding.was("encoding", &value)
-                    } else {
-                        finding.is("encoding", &value)
-                    };
-                    self.report(finding.on(Senders::BOTH, wire));
-                    self.claim(&["protocol", "frame", "encodings", &value]);
-                    self.claim(&["protocol", "frame", "encodings", "#order"]);
-                }
+            let is_kept = |one: &&Encoding| {
+                let other = to.encoding(one.role);
+                other.is_some_and(|it| it.value == one.value)
+            };
+            for encoding in from.encodings.iter().filter(|it| !is_kept(it)) {
+                let value = encoding.value.to_string();
+                let subject = format!("frame.encodings.{}", encoding.role.name());
+                let finding = Finding::alone(rule, removed, subject, &value, ("encoding", &value));
+                self.report(finding.on(Senders::BOTH, Wire::of(removed, !removed)));
+                self.claim_item(&["protocol", "frame", "encodings"], &value);
             }
         }
     }

@@ -21,6 +21,9 @@ use crate::matching::{self, Pair, TypePairs};
 use fc_spec::model::{Model, Operation, TypeDef};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+/// The last step of a path for a changed order of the items in both versions.
+const ORDER: &str = "#order";
+
 /// A path of the dump. The id of an item is its step into a list; the new version's id counts.
 pub(crate) type Path = Vec<String>;
 
@@ -96,25 +99,25 @@ impl<'m> Judge<'m> {
 
     /// Claims a path and everything below it.
     fn claim(&mut self, path: &[&str]) {
-        let path = path.iter().map(|part| (*part).to_owned()).collect();
-        self.account.claims.insert(path);
+        self.claim_in::<&str>(&[], path);
     }
 
     /// Claims a path below another one.
-    fn claim_in(&mut self, base: &[String], parts: &[&str]) {
-        let parts = parts.iter().map(|part| (*part).to_owned());
-        let path = base.iter().cloned().chain(parts).collect();
-        self.account.claims.insert(path);
+    fn claim_in<S: AsRef<str>>(&mut self, base: &[S], parts: &[&str]) {
+        let base = base.iter().map(AsRef::as_ref);
+        let path = base.chain(parts.iter().copied()).map(str::to_owned);
+        self.account.claims.insert(path.collect());
+    }
+
+    /// Claims an item that only one version of a list has, and the order of the list.
+    fn claim_item<S: AsRef<str>>(&mut self, list: &[S], id: &str) {
+        self.claim_in(list, &[id]);
+        self.claim_in(list, &[ORDER]);
     }
 
     /// Records that an item of a list has another id in the new version.
-    fn renamed_in(&mut self, list: &[String], old: &str, new: &str) {
-        let renames = self.account.renames.entry(list.to_vec()).or_default();
-        renames.insert(old.to_owned(), new.to_owned());
-    }
-
-    fn renamed(&mut self, list: &[&str], old: &str, new: &str) {
-        let list: Path = list.iter().map(|part| (*part).to_owned()).collect();
+    fn renamed<S: AsRef<str>>(&mut self, list: &[S], old: &str, new: &str) {
+        let list: Path = list.iter().map(|part| part.as_ref().to_owned()).collect();
         let renames = self.account.renames.entry(list).or_default();
         renames.insert(old.to_owned(), new.to_owned());
     }

@@ -1,7 +1,7 @@
 //! Judges operations.
 
 use super::frame::both;
-use super::{Judge, called};
+use super::{Judge, ORDER, called};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair, TypePair};
 use crate::rule::{Language, Rule, Wire};
@@ -45,12 +45,8 @@ impl<'m> Judge<'m> {
             (false, false) => &rules::REPORT_ADDED,
         };
         let spelling = operation.code.spelling.as_str();
-        let values = if removed {
-            [spelling, ""]
-        } else {
-            ["", spelling]
-        };
-        let mut finding = Finding::new(rule, name, values);
+        let named = (operation.kind().name(), name);
+        let mut finding = Finding::alone(rule, removed, name, spelling, named);
         if !removed {
             finding = finding.source(asked_by(operation, rule));
         }
@@ -59,30 +55,19 @@ impl<'m> Judge<'m> {
             let senders = Senders::of(operation.sender);
             finding = finding.on(senders, Wire::of(removed, !removed));
         }
-        let kind = operation.kind().name();
-        finding = if removed {
-            finding.was(kind, name)
-        } else {
-            finding.is(kind, name)
-        };
         self.report(finding);
         self.claim(&["operations", name]);
-        let types = if removed {
-            &self.old.types
-        } else {
-            &self.new.types
-        };
-        let own = types
-            .iter()
-            .filter(|it| it.body_of.as_ref().is_some_and(|it| it.operation == *name));
+        let model = if removed { self.old } else { self.new };
+        let types = model.types.iter();
+        let own = types.filter(|it| it.body_of.as_ref().is_some_and(|it| it.operation == *name));
         for ty in own {
             self.claim(&["types", &ty.name]);
         }
     }
 
     fn operation(&mut self, old: &'m Operation, new: &'m Operation) {
-        let (kind, name) = (new.kind().name(), new.name.as_str());
-        let at = |finding: Finding| finding.was(old.kind().name(), &old.name).is(kind, name);
+        let name = new.name.as_str();
+        let at = |finding: Finding| finding.between(old, new);
         if old.name != new.name {
             let finding = Finding::new(&rules::OPERATION_RENAMED, &old.name, [&old.name, name]);
             self.report(at(finding));
@@ -180,47 +165,34 @@ impl<'m> Judge<'m> {
         let results: HashMap<i64, i64> =
             results.map(|(one, other)| (one.code, other.code)).collect();
         let name = new.name.as_str();
-        let has_type = |it: &Operation| it.kind() == Kind::Command && !it.errors.is_empty();
+        let list = ["operations", name, "errors"];
+        let has_type = old.kind() == Kind::Command && !old.errors.is_empty();
         let mut kept = Vec::new();
         for error in &old.errors {
             let now = results.get(&error.code);
             let now = now.and_then(|code| new.error(*code));
             let code = error.code.to_string();
             if now.is_none_or(|now| now.code != error.code) {
-                self.claim(&["operations", name, "errors", "#order"]);
+                self.claim_in(&list, &[ORDER]);
             }
             if let Some(now) = now {
                 kept.push(now.code);
                 if now.code != error.code {
                     // A finding about the result reports the code.
-                    let list = ["operations", name, "errors"];
                     self.renamed(&list, &code, &now.code.to_string());
-                    self.claim(&["operations", name, "errors", &now.code.to_string(), "code"]);
+                    self.claim_in(&list, &[&now.code.to_string(), "code"]);
                 }
             } else {
-                let source = if has_type(old) {
-                    ERROR_REMOVED.source
-                } else {
-                    &[]
-                };
-                let finding = Finding::new(&ERROR_REMOVED, name, [&code, ""]).source(source);
-                let finding = finding.was(old.kind().name(), &old.name);
-                self.report(finding.is(new.kind().name(), name));
-                self.claim(&["operations", name, "errors", &code]);
+                let finding = Finding::new(&ERROR_REMOVED, name, [&code, ""]);
+                self.report(finding.source_if(has_type).between(old, new));
+                self.claim_in(&list, &[&code]);
             }
         }
         for error in new.errors.iter().filter(|it| !kept.contains(&it.code)) {
             let code = error.code.to_string();
-            let source = if has_type(old) {
-                ERROR_ADDED.source
-            } else {
-                &[]
-            };
-            let finding = Finding::new(&ERROR_ADDED, name, ["", &code]).source(source);
-            let finding = finding.was(old.kind().name(), &old.name);
-            self.report(finding.is(new.kind().name(), name));
-            self.claim(&["operations", name, "errors", &code]);
-            self.claim(&["operations", name, "errors", "#order"]);
+            let finding = Finding::new(&ERROR_ADDED, name, ["", &code]);
+            self.report(finding.source_if(has_type).between(old, new));
+            self.claim_item(&list, &code);
         }
     }
 
@@ -284,8 +256,7 @@ impl<'m> Judge<'m> {
             return;
         }
         for finding in findings {
-            let finding = finding.was(old.kind().name(), &old.name);
-            self.report(finding.is(new.kind().name(), &new.name));
+            self.report(finding.between(old, new));
         }
         self.claim(&["operations", &new.name, "sets_off"]);
     }

@@ -18,8 +18,7 @@ impl Judge<'_> {
         if is_past(&after, &before) || is_within {
             let subject = format!("{}.deprecated.sunset", new.name);
             let finding = Finding::new(&RELEASE, subject, [&before, &after]);
-            let kinds = (old.kind().name(), new.kind().name());
-            self.report(finding.was(kinds.0, &old.name).is(kinds.1, &new.name));
+            self.report(finding.between(old, new));
             self.claim(&["operations", &new.name, "deprecated", "sunset"]);
         }
     }

@@ -1,7 +1,7 @@
 //! Judges results, call times and tables.
 
-use super::Judge;
 use super::frame::both;
+use super::{Judge, ORDER};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair};
 use crate::rule::Wire;
@@ -12,25 +12,24 @@ use fc_spec::model::{ResultCode, Table};
 impl Judge<'_> {
     pub(super) fn results(&mut self) {
         for pair in matching::results(self.old, self.new) {
-            match pair {
-                Pair::Both(old, new) => self.result(old, new),
-                Pair::Removed(old) => {
-                    let code = old.code.to_string();
-                    let subject = format!("results.{}", old.name);
-                    let finding = Finding::new(&rules::RESULT_REMOVED, subject, [&code, ""]);
-                    self.report(finding.was("result", &code));
-                    self.claim(&["result_codes", &code]);
-                    self.claim(&["result_codes", "#order"]);
+            let (result, removed, rule) = match pair {
+                Pair::Both(old, new) => {
+                    self.result(old, new);
+                    continue;
                 }
-                Pair::Added(new) => {
-                    let code = new.code.to_string();
-                    let subject = format!("results.{}", new.name);
-                    let finding = Finding::new(&rules::RESULT_ADDED, subject, ["", &code]);
-                    self.report(finding.is("result", &code));
-                    self.claim(&["result_codes", &code]);
-                    self.claim(&["result_codes", "#order"]);
-                }
-            }
+                Pair::Removed(old) => (old, true, &rules::RESULT_REMOVED),
+                Pair::Added(new) => (new, false, &rules::RESULT_ADDED),
+            };
+            let code = result.code.to_string();
+            let subject = format!("results.{}", result.name);
+            self.report(Finding::alone(
+                rule,
+                removed,
+                subject,
+                &code,
+                ("result", &code),
+            ));
+            self.claim_item(&["result_codes"], &code);
         }
         self.times();
     }
@@ -58,7 +57,7 @@ impl Judge<'_> {
             for code in [old.code, new.code] {
                 self.claim(&["result_codes", &code.to_string()]);
             }
-            self.claim(&["result_codes", "#order"]);
+            self.claim(&["result_codes", ORDER]);
         }
     }
 
@@ -69,25 +68,24 @@ impl Judge<'_> {
             &self.new.tables,
             &[&|one: &Table, other: &Table| one.id == other.id],
         ) {
-            let finding = match pair {
+            let (table, removed, rule) = match pair {
                 Pair::Both(_, new) => {
                     // The row type is judged with the types.
                     self.claim(&["tables", &new.id, "row"]);
                     continue;
                 }
-                Pair::Removed(old) => {
-                    self.claim(&["tables", &old.id]);
-                    let subject = format!("tables.{}", old.id);
-                    Finding::new(&rules::TABLE_REMOVED, subject, ["", ""]).was("table", &old.id)
-                }
-                Pair::Added(new) => {
-                    self.claim(&["tables", &new.id]);
-                    let subject = format!("tables.{}", new.id);
-                    Finding::new(&rules::TABLE_ADDED, subject, ["", ""]).is("table", &new.id)
-                }
+                Pair::Removed(old) => (old, true, &rules::TABLE_REMOVED),
+                Pair::Added(new) => (new, false, &rules::TABLE_ADDED),
             };
-            self.report(finding);
-            self.claim(&["tables", "#order"]);
+            let subject = format!("tables.{}", table.id);
+            self.report(Finding::alone(
+                rule,
+                removed,
+                subject,
+                "",
+                ("table", &table.id),
+            ));
+            self.claim_item(&["tables"], &table.id);
         }
     }
 

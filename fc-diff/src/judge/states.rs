@@ -51,8 +51,7 @@ impl Judge<'_> {
                 (false, _) => [word(old).to_owned(), word(new).to_owned()],
             };
             let finding = Finding::new(&STATES, &here.subject, super::frame::both(&values));
-            let [one, other] = &here.owners;
-            let finding = finding.was("enum", one).is("enum", other);
+            let finding = here.owned("enum", finding);
             self.report(finding.source(source).behaviour(is_other));
             self.claim_in(&here.path, &["order"]);
         }
@@ -99,7 +98,6 @@ impl Judge<'_> {
             return;
         }
         let is_lost = before.keys().any(|ty| !after.contains_key(ty));
-        let source = if is_lost { ACCEPTED.source } else { &[] };
         let shown = |sets: &BTreeMap<String, Vec<Scalar>>| {
             let sets = sets.iter().map(|(ty, values)| {
                 let values: Vec<String> = values.iter().map(json).collect();
@@ -109,9 +107,8 @@ impl Judge<'_> {
         };
         let values = [shown(&before), shown(&after)];
         let finding = Finding::new(&ACCEPTED, &new.name, super::frame::both(&values));
-        let finding = finding.was(old.kind().name(), &old.name);
-        let finding = finding.is(new.kind().name(), &new.name);
-        self.report(finding.source(source).behaviour(narrows));
+        let finding = finding.between(old, new).source_if(is_lost);
+        self.report(finding.behaviour(narrows));
         match (old.accepted(), new.accepted()) {
             (Some(_), Some(_)) => self.claim(&["operations", &new.name, "accepted", "in"]),
             _ => self.claim(&["operations", &new.name, "accepted"]),

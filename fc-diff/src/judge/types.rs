@@ -1,11 +1,15 @@
 //! Judges types: objects, enums and choices.
 
-use super::{Judge, Path, called, json};
+use super::accept::{of_integers, within};
+use super::frame::both;
+use super::{Judge, ORDER, Path, called, json};
 use crate::finding::{Finding, Senders};
 use crate::matching::{self, Pair, TypePair};
-use crate::rule::{Language, Wire};
+use crate::rule::{Language, Rule, Wire};
 use crate::rules::choices as rules;
-use crate::rules::fields::{NAME_CHANGED, NUMBER_NARROWED, NUMBER_WIDENED, TYPE_CHANGED};
+use crate::rules::fields::{
+    COORDINATES, NAME_CHANGED, NUMBER_NARROWED, NUMBER_WIDENED, TYPE_CHANGED,
+};
 use crate::rules::operations::GROUP_MOVED;
 use fc_spec::model::{EnumRepr, EnumType, IntKind, OneOf, TypeDef, TypeShape};
 
@@ -20,6 +24,53 @@ pub(super) struct Here {
     pub(super) senders: Senders,
     /// The names of the old and the new type.
     pub(super) owners: [String; 2],
+}
+
+impl Here {
+    /// Returns the path of a list in it.
+    pub(super) fn list(&self, key: &str) -> Path {
+        [&self.path[..], &[key.to_owned()]].concat()
+    }
+
+    /// Adds both types to a finding.
+    pub(super) fn owned(&self, kind: &'static str, finding: Finding) -> Finding {
+        let [old, new] = &self.owners;
+        finding.was(kind, old).is(kind, new)
+    }
+
+    /// Returns a finding about a part with these old and new names.
+    pub(super) fn part(
+        &self,
+        rule: &'static Rule,
+        kind: &'static str,
+        [was, is]: [&str; 2],
+        values: [&str; 2],
+    ) -> Finding {
+        let [old, new] = &self.owners;
+        Finding::new(rule, format!("{}.{is}", self.subject), values)
+            .was(kind, format!("{old}.{was}"))
+            .is(kind, format!("{new}.{is}"))
+    }
+
+    /// Returns a finding about a part that only one version has, as [`Finding::alone`] does.
+    pub(super) fn alone(
+        &self,
+        rule: &'static Rule,
+        removed: bool,
+        (kind, name): (&'static str, &str),
+        value: &str,
+    ) -> Finding {
+        let [old, new] = &self.owners;
+        let owner = if removed { old } else { new };
+        let subject = format!("{}.{name}", self.subject);
+        Finding::alone(
+            rule,
+            removed,
+            subject,
+            value,
+            (kind, format!("{owner}.{name}")),
+        )
+    }
 }
 
 impl Judge<'_> {
@@ -38,9 +89,9 @@ impl Judge<'_> {
             match (&old.shape, &new.shape) {
                 (TypeShape::Struct(old), TypeShape::Struct(new)) => {
                     let systems = [&old.coordinates, &new.coordinates];
-                    if let Some(finding) = self.coordinates(here.subject.clone(), systems) {
-                        let finding = finding.was("", &here.owners[0]).is("", &here.owners[1]);
-                        self.report(finding.on(senders, Wire::Both));
+                    if let Some(values) = self.other_coordinates(systems) {
+                        let finding = Finding::new(&COORDINATES, &here.subject, values);
+                        self.report(here.owned("", finding).on(senders, Wire::Both));
                         self.claim_in(&here.path, &["coordinates"]);
                     }
                     self.object(&here, &old.fields, &new.fields);
@@ -70,23 +121,15 @@ impl Judge<'_> {
     }
 
     fn enumeration(&mut self, here: &Here, old: &EnumType, new: &EnumType) {
-        let at = |finding: Finding| {
-            finding
-                .was("enum", &here.owners[0])
-                .is("enum", &here.owners[1])
-        };
         if old.repr != new.repr {
             self.repr(here, old, new);
         }
         if old.closed != new.closed {
             let word = |closed| if closed { "closed" } else { "" };
-            let finding = Finding::new(
-                &rules::ENUM_CLOSED,
-                &here.subject,
-                [word(old.closed), word(new.closed)],
-            );
-            let finding = at(finding).on(here.senders, Wire::of(new.closed, old.closed));
-            self.report(finding);
+            let values = [word(old.closed), word(new.closed)];
+            let finding = Finding::new(&rules::ENUM_CLOSED, &here.subject, values);
+            let wire = Wire::of(new.closed, old.closed);
+            self.report(here.owned("enum", finding).on(here.senders, wire));
             self.claim_in(&here.path, &["closed"]);
         }
         let pairs = matching::align(
@@ -97,53 +140,33 @@ impl Judge<'_> {
             }],
         );
         self.states(here, [old, new], &pairs);
-        let list: Path = here
-            .path
-            .iter()
-            .cloned()
-            .chain(["values".to_owned()])
-            .collect();
+        let list = here.list("values");
         for pair in pairs {
             match pair {
                 Pair::Both(one, other) if one.wire != other.wire => {
                     let values = [json(&one.wire), json(&other.wire)];
-                    let subject = format!("{}.{}", here.subject, other.name);
-                    let finding = Finding::new(
-                        &rules::VALUE_RENUMBERED,
-                        subject,
-                        super::frame::both(&values),
-                    );
+                    let names = [&*one.name, &*other.name];
+                    let finding =
+                        here.part(&rules::VALUE_RENUMBERED, "value", names, both(&values));
                     // In TypeScript, the type of a closed enum lists the values in messages.
-                    let source = if old.closed {
-                        rules::VALUE_RENUMBERED.source
-                    } else {
-                        &[]
-                    };
-                    self.report(
-                        Self::value(finding, here, &one.name, &other.name)
-                            .on(here.senders, Wire::Both)
-                            .source(source),
-                    );
+                    let finding = finding.source_if(old.closed);
+                    self.report(finding.on(here.senders, Wire::Both));
                     self.claim_in(&list, &[&other.name, "value"]);
-                    self.claim_in(&list, &["#order"]);
+                    self.claim_in(&list, &[ORDER]);
                 }
                 Pair::Both(one, other) if one.name != other.name => {
-                    let subject = format!("{}.{}", here.subject, other.name);
-                    let finding = Finding::new(&NAME_CHANGED, subject, [&one.name, &other.name]);
-                    self.report(Self::value(finding, here, &one.name, &other.name));
-                    self.renamed_in(&list, &one.name, &other.name);
+                    let names = [&*one.name, &*other.name];
+                    self.report(here.part(&NAME_CHANGED, "value", names, names));
+                    self.renamed(&list, &one.name, &other.name);
                     self.claim_in(&list, &[&other.name, "name"]);
                 }
                 Pair::Both(..) => {}
                 Pair::Removed(one) => {
-                    let subject = format!("{}.{}", here.subject, one.name);
-                    let finding =
-                        Finding::new(&rules::VALUE_REMOVED, subject, [&json(&one.wire), ""]);
-                    let finding = finding.was("value", format!("{}.{}", here.owners[0], one.name));
+                    let named = ("value", &*one.name);
+                    let finding = here.alone(&rules::VALUE_REMOVED, true, named, &json(&one.wire));
                     let finding = finding.on(here.senders, Wire::of(new.closed, false));
                     self.report(finding.behaviour(!new.closed));
-                    self.claim_in(&list, &[&one.name]);
-                    self.claim_in(&list, &["#order"]);
+                    self.claim_item(&list, &one.name);
                 }
                 Pair::Added(other) => {
                     let rule = if old.closed {
@@ -151,70 +174,44 @@ impl Judge<'_> {
                     } else {
                         &rules::VALUE_ADDED_OPEN
                     };
-                    let subject = format!("{}.{}", here.subject, other.name);
-                    let finding = Finding::new(rule, subject, ["", &json(&other.wire)]);
-                    let finding = finding.is("value", format!("{}.{}", here.owners[1], other.name));
+                    let named = ("value", &*other.name);
+                    let finding = here.alone(rule, false, named, &json(&other.wire));
                     self.report(finding.on(here.senders, Wire::of(false, old.closed)));
-                    self.claim_in(&list, &[&other.name]);
-                    self.claim_in(&list, &["#order"]);
+                    self.claim_item(&list, &other.name);
                 }
             }
         }
     }
 
-    fn value(finding: Finding, here: &Here, old: &str, new: &str) -> Finding {
-        let [one, other] = &here.owners;
-        finding
-            .was("value", format!("{one}.{old}"))
-            .is("value", format!("{other}.{new}"))
-    }
-
     /// Judges the representation of an enum in messages.
     fn repr(&mut self, here: &Here, old: &EnumType, new: &EnumType) {
-        let name = |repr: EnumRepr| match repr {
-            EnumRepr::Int(kind) => kind.name(),
-            EnumRepr::String => "string",
-        };
-        let values = [name(old.repr), name(new.repr)];
+        let values = [old.repr.name(), new.repr.name()];
         let is_large = |repr| matches!(repr, EnumRepr::Int(IntKind::I64 | IntKind::U64));
         let mut sized = vec![Language::Rust, Language::Cpp];
         sized.extend((is_large(old.repr) != is_large(new.repr)).then_some(Language::Typescript));
         let (rule, wire, source) = match (old.repr, new.repr) {
             (EnumRepr::Int(one), EnumRepr::Int(other)) => {
-                let (one, other) = (one.range(), other.range());
-                let is_within = |inner: (i128, i128), outer: (i128, i128)| {
-                    outer.0 <= inner.0 && inner.1 <= outer.1
-                };
-                let (fits, fitted) = (is_within(one, other), is_within(other, one));
+                let (one, other) = (of_integers(one), of_integers(other));
+                let (fits, fitted) = (within(&one, &other), within(&other, &one));
                 // The values of a closed enum fit both types. Otherwise the spec would have an error.
                 let wire = Wire::of(!fits && !old.closed, !fitted && !new.closed);
-                (
-                    if fits {
-                        &NUMBER_WIDENED
-                    } else {
-                        &NUMBER_NARROWED
-                    },
-                    wire,
-                    sized,
-                )
+                let rule = if fits {
+                    &NUMBER_WIDENED
+                } else {
+                    &NUMBER_NARROWED
+                };
+                (rule, wire, sized)
             }
             _ => (&TYPE_CHANGED, Wire::Both, TYPE_CHANGED.source.to_vec()),
         };
         let finding = Finding::new(rule, &here.subject, values);
-        let finding = finding
-            .was("enum", &here.owners[0])
-            .is("enum", &here.owners[1]);
-        self.report(finding.on(here.senders, wire).source(source));
+        let finding = here.owned("enum", finding).on(here.senders, wire);
+        self.report(finding.source(source));
         self.claim_in(&here.path, &["repr"]);
     }
 
     fn choice(&mut self, here: &Here, old: &OneOf, new: &OneOf) {
-        let list: Path = here
-            .path
-            .iter()
-            .cloned()
-            .chain(["variants".to_owned()])
-            .collect();
+        let list = here.list("variants");
         let mut common = Vec::new();
         for pair in matching::variants(old, new) {
             match pair {
@@ -225,23 +222,17 @@ impl Judge<'_> {
                     }
                 }
                 Pair::Removed(one) => {
-                    let subject = format!("{}.{}", here.subject, one.name);
-                    let finding = Finding::new(&rules::VARIANT, subject, [&one.name, ""]);
-                    let finding =
-                        finding.was("variant", format!("{}.{}", here.owners[0], one.name));
+                    let named = ("variant", &*one.name);
+                    let finding = here.alone(&rules::VARIANT, true, named, &one.name);
                     self.report(finding.on(here.senders, Wire::OldSender));
-                    self.claim_in(&list, &[&one.name]);
-                    self.claim_in(&list, &["#order"]);
+                    self.claim_item(&list, &one.name);
                 }
                 Pair::Added(other) => {
-                    let subject = format!("{}.{}", here.subject, other.name);
-                    let finding = Finding::new(&rules::VARIANT, subject, ["", &other.name]);
-                    let finding =
-                        finding.is("variant", format!("{}.{}", here.owners[1], other.name));
+                    let named = ("variant", &*other.name);
+                    let finding = here.alone(&rules::VARIANT, false, named, &other.name);
                     let finding = finding.on(here.senders, Wire::NewSender);
                     self.report(finding.source(rules::MATCHED));
-                    self.claim_in(&list, &[&other.name]);
-                    self.claim_in(&list, &["#order"]);
+                    self.claim_item(&list, &other.name);
                 }
             }
         }
@@ -249,18 +240,9 @@ impl Judge<'_> {
         let now: Vec<&str> = now.filter(|name| common.contains(name)).collect();
         if common != now {
             let values = [common.join(", "), now.join(", ")];
-            let finding = Finding::new(
-                &rules::VARIANT_ORDER,
-                &here.subject,
-                super::frame::both(&values),
-            );
-            self.report(
-                finding
-                    .was("", &here.owners[0])
-                    .is("", &here.owners[1])
-                    .on(here.senders, Wire::Both),
-            );
-            self.claim_in(&list, &["#order"]);
+            let finding = Finding::new(&rules::VARIANT_ORDER, &here.subject, both(&values));
+            self.report(here.owned("", finding).on(here.senders, Wire::Both));
+            self.claim_in(&list, &[ORDER]);
         }
     }
 }

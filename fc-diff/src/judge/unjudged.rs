@@ -1,6 +1,6 @@
 //! Reports all differences between two dumps that no rule has judged.
 
-use super::{Account, Path};
+use super::{Account, ORDER, Path};
 use crate::finding::Finding;
 use crate::rules::UNJUDGED;
 use crate::rules::process::DOCS;
@@ -10,8 +10,6 @@ use std::collections::BTreeMap;
 
 /// Keys that are derived from other parts of the spec, or are not about the protocol.
 const DERIVED: [&str; 4] = ["place", "edit", "format", "waivers"];
-/// The last step of a path for a changed order of the items in both versions.
-const ORDER: &str = "#order";
 /// Lists in the order of the files. Their order has no meaning.
 const AS_WRITTEN: [&str; 6] = [
     "answers",
