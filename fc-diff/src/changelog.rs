@@ -1,6 +1,6 @@
 //! Formats findings as a section of a changelog.
 
-use crate::finding::{Deployment, Finding};
+use crate::finding::Finding;
 use crate::release::VERSION;
 use crate::rule::{About, pick};
 use fc_spec::model::Lang;
@@ -97,16 +97,7 @@ pub fn with_section(changelog: Option<&str>, section: &str, lang: Lang) -> Strin
 
 /// Returns the line of a break, with the deployments that it breaks.
 fn broken(finding: &Finding, lang: Lang) -> String {
-    let who = finding.wire.iter().map(|deployment| {
-        pick(
-            lang,
-            match deployment {
-                Deployment::OldAppNewRobot => ["old apps with new robots", "旧 app 配新机器人"],
-                Deployment::NewAppOldRobot => ["new apps with old robots", "新 app 配旧机器人"],
-            },
-        )
-    });
-    let who: Vec<_> = who.collect();
+    let who: Vec<_> = finding.wire.iter().map(|it| it.words(lang)).collect();
     let mut line = match lang {
         Lang::En => format!("{} (breaks {})", finding.message.en, who.join(" and ")),
         Lang::Zh => format!("{}（影响：{}）", finding.message.zh, who.join("、")),

@@ -2,8 +2,9 @@
 
 use crate::rule::{About, Language, Rule, Wire};
 use crate::rules::operations::{CODE_ASSIGNED, COMMAND_ADDED, REPORT_ADDED};
-use fc_spec::model::{Operation, Side, Text, Waiver, fingerprint};
-use serde::{Serialize, Serializer, ser::SerializeStruct as _};
+use fc_spec::index::{DefSite, Definitions};
+use fc_spec::model::{Lang, Operation, Side, Text, Waiver, fingerprint};
+use serde::Serialize;
 
 /// A combination of versions in the field: one end has the old version, the other the new one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -13,6 +14,16 @@ pub enum Deployment {
     OldAppNewRobot,
     /// New apps with old robots.
     NewAppOldRobot,
+}
+
+impl Deployment {
+    /// Returns the apps and the robots in words.
+    pub(crate) fn words(self, lang: Lang) -> &'static str {
+        match self {
+            Self::OldAppNewRobot => lang.pick("旧 app 配新机器人", "old apps with new robots"),
+            Self::NewAppOldRobot => lang.pick("新 app 配旧机器人", "new apps with old robots"),
+        }
+    }
 }
 
 /// The senders of the messages that contain a part of a spec.
@@ -69,6 +80,16 @@ pub struct Spot {
     pub kind: &'static str,
     /// The name with its owner, such as `Station.name`.
     pub name: String,
+}
+
+impl Spot {
+    /// Returns the place in the files of a version.
+    #[must_use]
+    pub fn place<'d>(&self, places: &'d Definitions) -> Option<&'d DefSite> {
+        let mut named = places.named(&self.name);
+        let found = named.find(|(item, _)| self.kind.is_empty() || item.kind == self.kind);
+        found.map(|(_, place)| place)
+    }
 }
 
 /// A change and its effects.
@@ -237,36 +258,4 @@ fn message(title: &str, subject: &str, from: &str, to: &str, signs: [&str; 3]) -
         (from, to) => format!("{from} → {to}"),
     };
     format!("{subject}{colon}{title}{open}{values}{close}")
-}
-
-/// Serializes with stable keys for other programs and an English message.
-impl Serialize for Finding {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.shown(&self.message.en, serializer)
-    }
-}
-
-impl Finding {
-    /// Serializes with this message.
-    pub(crate) fn shown<S: Serializer>(
-        &self,
-        message: &str,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        let keys = 9 + usize::from(self.waived.is_some());
-        let mut object = serializer.serialize_struct("Finding", keys)?;
-        object.serialize_field("rule", self.rule)?;
-        object.serialize_field("number", &self.rule.number)?;
-        object.serialize_field("subject", &self.subject)?;
-        object.serialize_field("wire", &self.wire)?;
-        object.serialize_field("source", &self.source)?;
-        object.serialize_field("behaviour", &self.behaviour)?;
-        object.serialize_field("silent", &self.silent)?;
-        object.serialize_field("message", message)?;
-        object.serialize_field("fingerprint", &self.fingerprint)?;
-        if let Some(waiver) = &self.waived {
-            object.serialize_field("waived", waiver)?;
-        }
-        object.end()
-    }
 }

@@ -1,14 +1,13 @@
 //! Renders findings for people and for other programs.
 
 use crate::finding::{Deployment, Finding, Spot};
-use crate::rule::pick;
+use crate::rule::{Language, pick};
 use crate::version::Version;
-use fc_spec::index::{DefId, DefSite};
+use fc_spec::index::DefSite;
 use fc_spec::model::Lang;
 use fc_spec::model::Waiver;
 use fc_spec::source::Span;
 use serde::Serialize;
-use serde::ser::{SerializeSeq as _, Serializer as _};
 use std::fmt::Write as _;
 
 /// An output format of findings.
@@ -16,7 +15,7 @@ use std::fmt::Write as _;
 pub enum Format {
     /// Text for a terminal, with the places of both versions.
     Text,
-    /// A list of objects with the keys of [`Finding`].
+    /// A list of objects with stable keys.
     Json,
     /// A Markdown table for a pull request or a changelog.
     Markdown,
@@ -110,24 +109,13 @@ fn place(spots: &[Spot], version: &Version) -> Option<(String, usize)> {
 }
 
 fn place_of<'v>(spots: &[Spot], version: &'v Version) -> Option<&'v DefSite> {
-    spots.iter().find_map(|spot| {
-        let is_kind = |item: &DefId| spot.kind.is_empty() || item.kind == spot.kind;
-        let mut found = version.places.named(&spot.name);
-        let found = found.find(|(item, _)| is_kind(item));
-        found.map(|(_, place)| place)
-    })
+    spots.iter().find_map(|spot| spot.place(&version.places))
 }
 
 /// Returns a short description of the effects.
 fn breaks(finding: &Finding, lang: Lang) -> String {
     let mut parts: Vec<String> = Vec::new();
-    for deployment in &finding.wire {
-        let word = match deployment {
-            Deployment::OldAppNewRobot => ["old apps with new robots", "旧 app 配新机器人"],
-            Deployment::NewAppOldRobot => ["new apps with old robots", "新 app 配旧机器人"],
-        };
-        parts.push(pick(lang, word).to_owned());
-    }
+    parts.extend(finding.wire.iter().map(|it| it.words(lang).to_owned()));
     if !finding.source.is_empty() {
         let names: Vec<_> = finding.source.iter().map(|it| it.name()).collect();
         let of = pick(lang, ["sources in ", "源代码："]);
@@ -140,6 +128,15 @@ fn breaks(finding: &Finding, lang: Lang) -> String {
         parts.push(pick(lang, ["without an error", "不报错"]).to_owned());
     }
     parts.join(pick(lang, ["; ", "；"]))
+}
+
+/// Returns the message of a finding with its effects.
+fn sentence(finding: &Finding, lang: Lang) -> String {
+    let message = lang.text(&finding.message);
+    match breaks(finding, lang).as_str() {
+        "" => message.to_owned(),
+        breaks => format!("{message} ({breaks})"),
+    }
 }
 
 fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> String {
@@ -206,23 +203,37 @@ fn waived(waiver: &Waiver, lang: Lang) -> String {
     }
 }
 
+/// A finding with stable keys for other programs.
+#[derive(Serialize)]
+struct Shown<'f> {
+    rule: &'static str,
+    number: u8,
+    subject: &'f str,
+    wire: &'f [Deployment],
+    source: &'f [Language],
+    behaviour: bool,
+    silent: bool,
+    message: &'f str,
+    fingerprint: &'f str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    waived: Option<&'f Waiver>,
+}
+
 fn json(findings: &[Finding], lang: Lang) -> String {
-    struct Shown<'f>(&'f Finding, Lang);
-    impl Serialize for Shown<'_> {
-        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            self.0.shown(self.1.text(&self.0.message), serializer)
-        }
-    }
-    let mut out = Vec::new();
-    let mut serializer = serde_json::Serializer::pretty(&mut out);
-    // Writing to memory cannot fail.
-    if let Ok(mut list) = serializer.serialize_seq(Some(findings.len())) {
-        for finding in findings {
-            let _ = list.serialize_element(&Shown(finding, lang));
-        }
-        let _ = list.end();
-    }
-    String::from_utf8(out).unwrap_or_default() + "\n"
+    let shown = findings.iter().map(|finding| Shown {
+        rule: finding.rule.name,
+        number: finding.rule.number,
+        subject: &finding.subject,
+        wire: &finding.wire,
+        source: &finding.source,
+        behaviour: finding.behaviour,
+        silent: finding.silent,
+        message: lang.text(&finding.message),
+        fingerprint: &finding.fingerprint,
+        waived: finding.waived.as_ref(),
+    });
+    // Texts and flags always serialize.
+    serde_json::to_string_pretty(&shown.collect::<Vec<_>>()).unwrap_or_default() + "\n"
 }
 
 fn markdown(findings: &[Finding], lang: Lang) -> String {
@@ -267,12 +278,6 @@ fn github(findings: &[Finding], new: &Version, lang: Lang) -> String {
         } else {
             "warning"
         };
-        let message = format!(
-            "{} ({})",
-            lang.text(&finding.message),
-            breaks(finding, lang)
-        );
-        let message = message.trim_end_matches(" ()");
         let at = place(&finding.new, new)
             .map(|(path, line)| format!("file={},line={line},", property(&path)));
         let _ = writeln!(
@@ -280,7 +285,7 @@ fn github(findings: &[Finding], new: &Version, lang: Lang) -> String {
             "::{level} {}title={}::{}",
             at.unwrap_or_default(),
             finding.rule.code(),
-            escape(message)
+            escape(&sentence(finding, lang))
         );
     }
     text
@@ -308,7 +313,7 @@ fn sarif(findings: &[Finding], new: &Version, lang: Lang) -> String {
             json!({
                 "ruleId": finding.rule.code(),
                 "level": if finding.is_fault() { "error" } else if finding.wire.is_empty() { "note" } else { "warning" },
-                "message": { "text": format!("{} ({})", lang.text(&finding.message), breaks(finding, lang)).trim_end_matches(" ()") },
+                "message": { "text": sentence(finding, lang) },
                 "locations": at.into_iter().collect::<Vec<_>>(),
                 "partialFingerprints": { "fc/v1": finding.fingerprint },
                 // Code hosts then mark the finding as accepted and do not count it.

@@ -1,7 +1,7 @@
 //! Rules: their codes, effects, mirrors and texts.
 
 use fc_spec::model::Lang;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// A kind of change, and its greatest possible effects.
 #[derive(Debug)]
@@ -208,12 +208,5 @@ impl Rule {
             })
             .collect();
         lines.join("\n")
-    }
-}
-
-/// Serializes the name.
-impl Serialize for Rule {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name)
     }
 }

@@ -153,11 +153,7 @@ fn breaking(findings: &[Finding]) -> impl Iterator<Item = &Finding> {
 /// Returns the key of the operation or declared type that contains a finding.
 fn shown_at(snapshot: &Snapshot, finding: &Finding) -> Option<Span> {
     let places = snapshot.definitions();
-    let spot = finding.new.iter().find_map(|spot| {
-        let mut named = places.named(&spot.name);
-        let found = named.find(|(item, _)| spot.kind.is_empty() || item.kind == spot.kind);
-        found.map(|(_, place)| place)
-    })?;
+    let spot = finding.new.iter().find_map(|spot| spot.place(places))?;
     let around = places.in_file(spot.key.file).filter(|(item, place)| {
         (item.is_operation() || item.is_type()) && crate::item::holds(place, spot.key)
     });

@@ -1,25 +1,17 @@
 //! Types of fields in each language. `tests/it/packages.rs` compares them with the output of `fc-codegen`.
 
 use crate::rule::Language;
+use crate::rules::EVERY;
 use fc_spec::model::{Field, FloatKind, IntKind, Number, Type};
 use std::borrow::Cow;
 
-/// All languages.
-const ALL: [Language; 6] = [
-    Language::Rust,
-    Language::Kotlin,
-    Language::JvmBinary,
-    Language::Cpp,
-    Language::Python,
-    Language::Typescript,
-];
 /// The largest integer that a `number` of JavaScript holds exactly.
 const SAFE: i128 = (1 << 53) - 1;
 
 /// Returns the languages in which two fields have different types.
 pub(super) fn changed(old: &Field, new: &Field) -> Vec<Language> {
     let differs = |language: &Language| held(*language, old) != held(*language, new);
-    ALL.into_iter().filter(differs).collect()
+    EVERY.iter().copied().filter(differs).collect()
 }
 
 /// Returns the type of a member, and `true` if the type includes its absence.

@@ -42,7 +42,7 @@ impl Rule {
 }
 
 /// All languages.
-const EVERY: &[Language] = &[
+pub(crate) const EVERY: &[Language] = &[
     Language::Rust,
     Language::Kotlin,
     Language::JvmBinary,
