@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::rule::rules;
-use super::search::{Search, TITLE, of_field};
+use super::search::{Search, Subject, TITLE};
 use crate::load::texts::has_chinese;
 use crate::model::Operation;
 use crate::text;
@@ -33,7 +33,7 @@ fn text_repeats_name(search: &mut Search<'_>) {
         let name = crate::names::snake(&field.wire);
         if words(&name) == words(&field.text.en) && field.details().note.is_none() {
             search.report(
-                of_field(ty, field),
+                Subject::Field(ty, field),
                 text!(
                     "“{said}”只重复了 `{key}`",
                     "\"{said}\" only repeats `{key}`",

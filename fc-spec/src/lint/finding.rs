@@ -41,8 +41,8 @@ impl Finding {
     }
 
     /// Adds another thing that shows the violation.
-    pub(super) fn with(mut self, item: DefId, text: Text) -> Self {
-        self.also.push((item, text));
+    pub(super) fn with(mut self, item: impl Into<DefId>, text: Text) -> Self {
+        self.also.push((item.into(), text));
         self
     }
 

@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::rule::rules;
-use super::search::{Search, of_field, of_group, of_operation};
+use super::search::{Search, Subject};
 use crate::model::Effect;
 use crate::text;
 use std::collections::HashMap;
@@ -19,7 +19,7 @@ fn group_file(search: &mut Search<'_>) {
         let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
         if stem != group.id {
             search.report(
-                of_group(group),
+                Subject::Group(group),
                 text!(
                     "分组 `{id}` 写在文件 `{file}` 中",
                     "the group `{id}` is in the file `{file}`",
@@ -47,8 +47,9 @@ fn similar_keys(search: &mut Search<'_>) {
                     "`{other}` 与 `{one}` 仅大小写或 `_` 不同",
                     "`{other}` differs from `{one}` only in case or `_`"
                 );
-                let finding = Finding::new(search.rule, of_field(ty, field), message);
-                search.add(finding.with(of_field(ty, first), text!("另一个", "the other one")));
+                let finding = Finding::new(search.rule, Subject::Field(ty, field), message);
+                search
+                    .add(finding.with(Subject::Field(ty, first), text!("另一个", "the other one")));
             }
         }
     }
@@ -71,7 +72,7 @@ fn name_against_effect(search: &mut Search<'_>) {
         };
         let effect = effect.name();
         search.report(
-            of_operation(operation),
+            Subject::Operation(operation),
             text!(
                 "名称以 `{verb}` 开头，而影响是 `{effect}`",
                 "the name starts with `{verb}`, but the effect is `{effect}`"

@@ -7,6 +7,7 @@ use crate::language::grammar as language;
 use crate::model::{
     EnumValue, Field, Group, Kind, Model, Operation, StructType, Text, TypeDef, TypeShape, Variant,
 };
+use serde_json::{Value, to_value};
 
 /// The part of a subject that a short text without paragraphs describes.
 pub(super) const TITLE: &str = "text";
@@ -38,7 +39,7 @@ impl<'m> Search<'m> {
         message: impl Fn(&str) -> Text,
     ) {
         for (ty, field) in self.fields().filter(|(_, field)| has_problem(field)) {
-            self.report(of_field(ty, field), message(&field.wire));
+            self.report(Subject::Field(ty, field), message(&field.wire));
         }
     }
 
@@ -49,7 +50,7 @@ impl<'m> Search<'m> {
         message: impl Fn(&str) -> Text,
     ) {
         for operation in self.operations().filter(|it| has_problem(it)) {
-            self.report(of_operation(operation), message(&operation.name));
+            self.report(Subject::Operation(operation), message(&operation.name));
         }
     }
 
@@ -79,46 +80,32 @@ impl<'m> Search<'m> {
 
     /// Returns every documentation text with its subject and its part of it: [`TITLE`] or [`ABOUT`].
     pub fn texts(&self) -> Vec<(Subject<'m>, &'static str, &'m Text)> {
-        let mut texts = Vec::new();
-        for group in &self.model.groups {
-            let of = Subject::Group(group);
-            texts.push((of, TITLE, &group.title));
-            texts.extend(group.about.iter().map(|about| (of, ABOUT, about)));
-        }
-        for operation in &self.model.operations {
-            let of = Subject::Operation(operation);
-            texts.push((of, TITLE, &operation.title));
-            texts.extend(operation.about.iter().map(|about| (of, ABOUT, about)));
-        }
-        for ty in &self.model.types {
-            let of = Subject::Type(ty);
-            if ty.body_of.is_none() {
-                texts.push((of, TITLE, &ty.title));
-            }
-            texts.extend(ty.about.iter().map(|about| (of, ABOUT, about)));
-            match &ty.shape {
-                TypeShape::Struct(shape) => {
-                    for field in &shape.fields {
-                        let of = Subject::Field(ty, field);
-                        texts.push((of, TITLE, &field.text));
-                        let note = field.details().note.iter();
-                        texts.extend(note.map(|note| (of, ABOUT, note)));
-                    }
-                }
-                TypeShape::Enum(shape) => {
-                    let of = |it| Subject::Value(ty, it);
-                    let values = shape.values.iter();
-                    texts.extend(values.map(|it| (of(it), TITLE, &it.text)));
-                }
-                TypeShape::OneOf(choice) => {
-                    let of = |it| Subject::Variant(ty, it);
-                    let variants = choice.variants.iter();
-                    texts.extend(variants.map(|it| (of(it), TITLE, &it.text)));
-                }
-            }
-        }
-        texts
+        let texts = subjects(self.model).flat_map(|of| {
+            let (title, about) = of.texts();
+            let title = title.map(|text| (of, TITLE, text));
+            title.into_iter().chain(about.map(|text| (of, ABOUT, text)))
+        });
+        texts.collect()
     }
+}
+
+/// Returns everything in a model that rules can be about.
+pub(super) fn subjects(model: &Model) -> impl Iterator<Item = Subject<'_>> {
+    let groups = model.groups.iter().map(Subject::Group);
+    let operations = model.operations.iter().map(Subject::Operation);
+    let types = model.types.iter().flat_map(|ty| {
+        let parts: Vec<_> = match &ty.shape {
+            TypeShape::Struct(it) => it.fields.iter().map(|it| Subject::Field(ty, it)).collect(),
+            TypeShape::Enum(it) => it.values.iter().map(|it| Subject::Value(ty, it)).collect(),
+            TypeShape::OneOf(it) => it
+                .variants
+                .iter()
+                .map(|it| Subject::Variant(ty, it))
+                .collect(),
+        };
+        std::iter::once(Subject::Type(ty)).chain(parts)
+    });
+    groups.chain(operations).chain(types)
 }
 
 /// The subject of a finding.
@@ -140,62 +127,67 @@ pub(super) enum Subject<'m> {
     Variant(&'m TypeDef, &'m Variant),
 }
 
-impl From<Subject<'_>> for DefId {
-    fn from(subject: Subject<'_>) -> Self {
-        match subject {
-            Subject::Group(group) => of_group(group),
-            Subject::Operation(operation) => of_operation(operation),
-            Subject::Type(ty) => of_type(ty),
-            Subject::Field(ty, field) => of_field(ty, field),
-            Subject::Value(ty, value) => of_value(ty, value),
-            Subject::Variant(ty, variant) => of_variant(ty, variant),
+impl<'m> Subject<'m> {
+    /// Returns the short text and the text with paragraphs.
+    fn texts(self) -> (Option<&'m Text>, Option<&'m Text>) {
+        match self {
+            Self::Group(it) => (Some(&it.title), it.about.as_ref()),
+            Self::Operation(it) => (Some(&it.title), it.about.as_ref()),
+            Self::Type(it) => (it.body_of.is_none().then_some(&it.title), it.about.as_ref()),
+            Self::Field(_, it) => (Some(&it.text), it.details().note.as_ref()),
+            Self::Value(_, it) => (Some(&it.text), None),
+            Self::Variant(_, it) => (Some(&it.text), None),
+        }
+    }
+
+    /// Returns the subject as a dump has it.
+    pub fn dump(self) -> serde_json::Result<Value> {
+        match self {
+            Self::Group(it) => to_value(it),
+            Self::Operation(it) => to_value(it),
+            Self::Type(it) => to_value(it),
+            Self::Field(_, it) => to_value(it),
+            Self::Value(_, it) => to_value(it),
+            Self::Variant(_, it) => to_value(it),
         }
     }
 }
 
-fn item(kind: &'static str, owner: Option<&str>, name: &str) -> DefId {
+impl From<Subject<'_>> for DefId {
+    fn from(subject: Subject<'_>) -> Self {
+        match subject {
+            Subject::Group(it) => item(language::Group::TABLE, None, &it.id),
+            Subject::Operation(it) => {
+                let table = match it.kind() {
+                    Kind::Command => language::Command::TABLE,
+                    Kind::Report => language::Report::TABLE,
+                    Kind::Stream => language::Stream::TABLE,
+                };
+                item(table, None, &it.name)
+            }
+            Subject::Type(it) => {
+                let table = match &it.shape {
+                    TypeShape::Struct(_) => language::Struct::TABLE,
+                    TypeShape::Enum(_) => language::Enum::TABLE,
+                    TypeShape::OneOf(_) => language::OneOf::TABLE,
+                };
+                item(table, None, &it.name)
+            }
+            Subject::Field(ty, it) => item(language::Field::TABLE, Some(ty), &it.wire),
+            Subject::Value(ty, it) => item(language::EnumValue::TABLE, Some(ty), &it.name),
+            Subject::Variant(ty, it) => item(language::NamedVariant::TABLE, Some(ty), &it.name),
+        }
+    }
+}
+
+fn item(table: &language::Table, owner: Option<&TypeDef>, name: &str) -> DefId {
     DefId {
-        kind,
-        owner: owner.map(str::to_owned),
+        kind: table.name,
+        owner: owner.map(|ty| ty.name.clone()),
         name: name.to_owned(),
     }
 }
 
-pub(super) fn of_group(group: &Group) -> DefId {
-    item(language::Group::TABLE.name, None, &group.id)
-}
-
-pub(super) fn of_operation(operation: &Operation) -> DefId {
-    let kind = match operation.kind() {
-        Kind::Command => language::Command::TABLE.name,
-        Kind::Report => language::Report::TABLE.name,
-        Kind::Stream => language::Stream::TABLE.name,
-    };
-    item(kind, None, &operation.name)
-}
-
-pub(super) fn of_type(ty: &TypeDef) -> DefId {
-    let kind = match &ty.shape {
-        TypeShape::Struct(_) => language::Struct::TABLE.name,
-        TypeShape::Enum(_) => language::Enum::TABLE.name,
-        TypeShape::OneOf(_) => language::OneOf::TABLE.name,
-    };
-    item(kind, None, &ty.name)
-}
-
-pub(super) fn of_field(ty: &TypeDef, field: &Field) -> DefId {
-    item(language::Field::TABLE.name, Some(&ty.name), &field.wire)
-}
-
-pub(super) fn of_value(ty: &TypeDef, value: &EnumValue) -> DefId {
-    item(language::EnumValue::TABLE.name, Some(&ty.name), &value.name)
-}
-
-pub(super) fn of_variant(ty: &TypeDef, variant: &Variant) -> DefId {
-    let kind = language::NamedVariant::TABLE.name;
-    item(kind, Some(&ty.name), &variant.name)
-}
-
 pub(super) fn of_waiver(id: &str) -> DefId {
-    item(language::Waiver::TABLE.name, None, id)
+    item(language::Waiver::TABLE, None, id)
 }

@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::rule::rules;
-use super::search::{Search, of_field, of_operation};
+use super::search::{Search, Subject};
 use crate::model::{BodyState, Effect, Exchange, Field, Operation, Text, Type, TypeDef};
 use crate::names::snake;
 use crate::text;
@@ -95,8 +95,8 @@ fn several(search: &mut Search<'_>, ways: Vec<(&str, (&TypeDef, &Field))>, what:
             key = field.wire
         );
         let label = text!("这里是 `{first}`", "`{first}` here");
-        let finding = Finding::new(search.rule, of_field(ty, field), message);
-        search.add(finding.with(of_field(first_type, first_field), label));
+        let finding = Finding::new(search.rule, Subject::Field(ty, field), message);
+        search.add(finding.with(Subject::Field(first_type, first_field), label));
     }
 }
 
@@ -188,7 +188,7 @@ fn code_of_other_group(search: &mut Search<'_>) {
             && !range.groups.contains(&operation.group)
         {
             search.report(
-                of_operation(operation),
+                Subject::Operation(operation),
                 text!(
                     "`{name}` 的功能码在用于 {groups} 的号段内",
                     "`{name}` has a code of the range for {groups}",

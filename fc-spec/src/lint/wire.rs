@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::rule::rules;
-use super::search::{Search, of_field};
+use super::search::{Search, Subject};
 use crate::model::{Direction, Exchange, Field, IntKind, Type, TypeShape, WireForm};
 use crate::text;
 
@@ -74,7 +74,7 @@ fn closed_enum_in_report(search: &mut Search<'_>) {
             let shape = named.map(|named| &search.model.types.get(named).shape);
             if matches!(shape, Some(TypeShape::Enum(shape)) if shape.closed) {
                 search.report(
-                    of_field(ty, field),
+                    Subject::Field(ty, field),
                     text!(
                         "`{key}` 为必填，而它的枚举是封闭的",
                         "`{key}` is required, but its enum is closed",
@@ -96,8 +96,11 @@ fn seconds_beside_milliseconds(search: &mut Search<'_>) {
                 seconds_key = seconds.wire,
                 other_key = other.wire
             );
-            let finding = Finding::new(search.rule, of_field(ty, seconds), message);
-            search.add(finding.with(of_field(ty, other), text!("以毫秒计", "in milliseconds")));
+            let finding = Finding::new(search.rule, Subject::Field(ty, seconds), message);
+            search.add(finding.with(
+                Subject::Field(ty, other),
+                text!("以毫秒计", "in milliseconds"),
+            ));
         }
     }
 }

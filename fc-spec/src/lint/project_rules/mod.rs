@@ -7,9 +7,8 @@ use crate::language::grammar as language;
 use crate::lint::finding::Finding;
 use crate::lint::predicate::Test;
 use crate::lint::rule::{Level, Rule, rule};
-use crate::lint::search::{of_field, of_group, of_operation, of_type, of_value, of_variant};
-use crate::model::{Model, Text, TypeShape};
-use serde_json::Value;
+use crate::lint::search::subjects;
+use crate::model::{Model, Text};
 
 /// The rule for all findings of rules of the project.
 pub(super) const HOUSE_RULE: &Rule = &rule!(FC0890 "house-rule" House Warning None, "违反本项目的规则" "violation of a rule of this project");
@@ -69,42 +68,22 @@ pub(super) fn find(model: &Model, rules: &[HouseRule]) -> Vec<Finding> {
     if rules.is_empty() {
         return findings;
     }
-    let mut look = |item: DefId, value: &dyn Fn() -> serde_json::Result<Value>| {
-        let mut rules = rules.iter().filter(|rule| rule.on.contains(&item.kind));
-        let Some(first) = rules.next() else { return };
+    for subject in subjects(model) {
+        let item = DefId::from(subject);
+        let mut rules = rules
+            .iter()
+            .filter(|rule| rule.on.contains(&item.kind))
+            .peekable();
+        if rules.peek().is_none() {
+            continue;
+        }
         // A part of a model always serializes.
-        let Ok(value) = value() else { return };
-        for rule in std::iter::once(first).chain(rules) {
+        let Ok(value) = subject.dump() else { continue };
+        for rule in rules {
             if rule.only.holds(&value) && !rule.require.holds(&value) {
                 let mut finding = Finding::new(HOUSE_RULE, item.clone(), rule.text.clone());
                 finding.house = Some(rule.id.clone());
                 findings.push(finding);
-            }
-        }
-    };
-    for group in &model.groups {
-        look(of_group(group), &|| serde_json::to_value(group));
-    }
-    for operation in &model.operations {
-        look(of_operation(operation), &|| serde_json::to_value(operation));
-    }
-    for ty in &model.types {
-        look(of_type(ty), &|| serde_json::to_value(ty));
-        match &ty.shape {
-            TypeShape::Struct(shape) => {
-                for field in &shape.fields {
-                    look(of_field(ty, field), &|| serde_json::to_value(field));
-                }
-            }
-            TypeShape::Enum(shape) => {
-                for value in &shape.values {
-                    look(of_value(ty, value), &|| serde_json::to_value(value));
-                }
-            }
-            TypeShape::OneOf(choice) => {
-                for variant in &choice.variants {
-                    look(of_variant(ty, variant), &|| serde_json::to_value(variant));
-                }
             }
         }
     }
