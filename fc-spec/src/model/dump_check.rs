@@ -1,8 +1,7 @@
 //! Checks the bodies and examples of a dump against its types.
 
 use super::{
-    Direction, EnumRepr, Example, Field, Model, Number, StructType, Type, TypeShape, Unlinked,
-    Value, WireForm,
+    EnumRepr, Example, Field, Model, Number, StructType, Type, TypeShape, Unlinked, Value, WireForm,
 };
 
 impl Model {
@@ -13,10 +12,7 @@ impl Model {
             let operation = self.operations.iter().find(|it| it.name == body.operation);
             let found = operation.and_then(|it| it.body(body.side));
             if !found.is_some_and(|it| !body.path.is_empty() || it.ty.name() == ty.name) {
-                let side = match body.side {
-                    Direction::Request => "request",
-                    Direction::Response => "response",
-                };
+                let side = body.side.name();
                 return Err(Unlinked {
                     missing: format!("the {side} of `{}`", body.operation),
                     user: format!("`{}`", ty.name),

@@ -111,22 +111,6 @@ pub enum Exchange {
 }
 
 impl Exchange {
-    /// Returns the reports that a command sets off, for linking.
-    pub(super) fn sets_off_mut(&mut self) -> Option<&mut Vec<SetOff>> {
-        match self {
-            Self::Command { sets_off, .. } => Some(sets_off),
-            Self::Report { .. } | Self::Stream(_) => None,
-        }
-    }
-
-    /// Returns the preconditions of a command, for linking.
-    pub(super) fn accepted_mut(&mut self) -> Option<&mut Accepted> {
-        match self {
-            Self::Command { accepted, .. } => accepted.as_mut(),
-            Self::Report { .. } | Self::Stream(_) => None,
-        }
-    }
-
     /// Returns the bodies, for linking.
     pub(super) fn bodies_mut(&mut self) -> impl Iterator<Item = &mut Body> {
         let (first, second) = match self {

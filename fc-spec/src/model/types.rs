@@ -117,11 +117,8 @@ pub(crate) fn link(
                 for value in &mut shape.values {
                     let from = &value.name;
                     value.then.retain(|next| {
-                        let linked = names.contains(next);
-                        let linked = linked
-                            .then_some(())
-                            .ok_or_else(|| format!("the value `{next}`"));
-                        is_linked(linked, &|| format!("`{owner}.{from}`"))
+                        let user = || format!("`{owner}.{from}`");
+                        is_linked(declared(&names, "value", next), &user)
                     });
                 }
             }
@@ -138,33 +135,30 @@ pub(crate) fn link(
     let (commands, reports) = (names(Kind::Command), names(Kind::Report));
     for operation in &mut *operations {
         let user = &operation.name;
-        if let Exchange::Stream(stream) = &mut operation.exchange {
-            for by in [&mut stream.started_by, &mut stream.stopped_by] {
-                let missing = by.take_if(|name| !commands.contains(name));
-                let missing = missing.map_or(Ok(()), |name| Err(format!("the command `{name}`")));
-                is_linked(missing, &|| format!("`{user}`"));
-            }
-        }
-        let command = &operation.name;
-        if let Some(sets_off) = operation.exchange.sets_off_mut() {
-            sets_off.retain(|SetOff { report: name, .. }| {
-                let linked = reports.contains(name).then_some(());
-                let linked = linked.ok_or_else(|| format!("the report `{name}`"));
-                is_linked(linked, &|| format!("`{command}`"))
-            });
-        }
-        if let Some(accepted) = operation.exchange.accepted_mut() {
-            accepted.after.retain(|name| {
-                let linked = commands.contains(name).then_some(());
-                let linked = linked.ok_or_else(|| format!("the command `{name}`"));
-                is_linked(linked, &|| format!("`{command}`"))
-            });
-            if let Some(AcceptedIn::States(sets)) = &mut accepted.states {
-                sets.retain_mut(|StateSet { ty, .. }| {
-                    let linked = ids.link(ty).map(drop);
-                    is_linked(linked, &|| format!("`{command}`"))
+        let user = || format!("`{user}`");
+        match &mut operation.exchange {
+            Exchange::Command {
+                sets_off, accepted, ..
+            } => {
+                sets_off.retain(|SetOff { report, .. }| {
+                    is_linked(declared(&reports, Kind::Report.name(), report), &user)
                 });
+                let Some(accepted) = accepted else { continue };
+                accepted.after.retain(|name| {
+                    is_linked(declared(&commands, Kind::Command.name(), name), &user)
+                });
+                if let Some(AcceptedIn::States(sets)) = &mut accepted.states {
+                    sets.retain_mut(|StateSet { ty, .. }| is_linked(ids.link(ty).map(drop), &user));
+                }
             }
+            Exchange::Stream(stream) => {
+                for by in [&mut stream.started_by, &mut stream.stopped_by] {
+                    by.take_if(|name| {
+                        !is_linked(declared(&commands, Kind::Command.name(), name), &user)
+                    });
+                }
+            }
+            Exchange::Report { .. } => {}
         }
     }
     operations.retain_mut(|operation| {
@@ -184,6 +178,12 @@ pub(crate) fn link(
         });
     }
     missing
+}
+
+/// Returns an error that describes the missing thing, unless it is declared.
+fn declared(names: &HashSet<String>, kind: &str, name: &str) -> Result<(), String> {
+    let is_declared = names.contains(name).then_some(());
+    is_declared.ok_or_else(|| format!("the {kind} `{name}`"))
 }
 
 /// The ids of the types, each with `true` for a struct.
