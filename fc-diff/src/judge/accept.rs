@@ -1,7 +1,7 @@
 //! Compares the values that two fields accept.
 
 use crate::rule::Wire;
-use fc_spec::model::{Field, FieldDetails, IntKind, Number, Quirk, Scalar, Type, WireForm};
+use fc_spec::model::{Field, FieldDetails, IntKind, Number, Quirk, Scalar, Type};
 use std::cmp::Ordering;
 
 /// The smallest and the largest number. `None` means no limit.
@@ -37,17 +37,12 @@ pub(super) fn of_integers(kind: IntKind) -> Interval {
 
 /// Returns `true` if `outer` contains all of `inner`.
 pub(super) fn within(inner: &Interval, outer: &Interval) -> bool {
-    let least = match (&inner.0, &outer.0) {
-        (_, None) => true,
-        (None, Some(_)) => false,
-        (Some(inner), Some(outer)) => compare(inner, outer) != Ordering::Less,
+    let ends = |inner: &Option<Number>, outer: &Option<Number>, beyond: Ordering| {
+        let inner = inner.as_ref();
+        let holds = |outer| inner.is_some_and(|inner| compare(inner, outer) != beyond);
+        outer.as_ref().is_none_or(holds)
     };
-    let most = match (&inner.1, &outer.1) {
-        (_, None) => true,
-        (None, Some(_)) => false,
-        (Some(inner), Some(outer)) => compare(inner, outer) != Ordering::Greater,
-    };
-    least && most
+    ends(&inner.0, &outer.0, Ordering::Less) && ends(&inner.1, &outer.1, Ordering::Greater)
 }
 
 fn compare(one: &Number, other: &Number) -> Ordering {
@@ -64,18 +59,11 @@ pub(super) fn only_within(inner: &[Scalar], outer: &[Scalar]) -> bool {
 
 /// Returns the messages that a change of form breaks. A lenient receiver reads both forms.
 pub(super) fn forms(old: &Field, new: &Field) -> Wire {
-    let is_lenient = |field: &Field, form: WireForm| {
+    let is_lenient = |field: &Field| {
         let quirks = &field.details().quirks;
-        match form {
-            WireForm::Plain | WireForm::String | WireForm::Number => {
-                quirks.contains(&Quirk::LenientNumber) || quirks.contains(&Quirk::LenientBool)
-            }
-        }
+        quirks.contains(&Quirk::LenientNumber) || quirks.contains(&Quirk::LenientBool)
     };
-    Wire::of(
-        !is_lenient(new, old.wire_form),
-        !is_lenient(old, new.wire_form),
-    )
+    Wire::of(!is_lenient(new), !is_lenient(old))
 }
 
 /// Returns the messages that a change of type breaks, if no other rule judges it. A string accepts any Base64, and JSON
