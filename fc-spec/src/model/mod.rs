@@ -24,6 +24,7 @@ mod projection;
 mod protocol;
 mod question;
 mod reference;
+mod schema;
 mod sections;
 mod stream;
 mod text;

@@ -1,5 +1,6 @@
 //! References to the named types of a model.
 
+use super::schema::fixed_schema;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
@@ -95,16 +96,4 @@ impl<'de> Deserialize<'de> for TypeRef {
     }
 }
 
-impl JsonSchema for TypeRef {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "TypeRef".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({ "type": "string" })
-    }
-}
+fixed_schema!(TypeRef, { "type": "string" });

@@ -1,5 +1,6 @@
 //! String forms of model types that are one word in the spec and in the dump.
 
+use super::schema::fixed_schema;
 use super::{EnumRepr, HeaderType, Subject, Type, TypeRef};
 use crate::vocabulary::{FloatKind, IntKind, Word as _};
 use std::fmt;
@@ -36,19 +37,7 @@ macro_rules! as_text {
             }
         }
 
-        impl schemars::JsonSchema for $Type {
-            fn inline_schema() -> bool {
-                true
-            }
-
-            fn schema_name() -> std::borrow::Cow<'static, str> {
-                stringify!($Type).into()
-            }
-
-            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                schemars::json_schema!({ "type": "string" })
-            }
-        }
+        fixed_schema!($Type, { "type": "string" });
 
         impl FromStr for $Type {
             type Err = Unreadable;

@@ -1,5 +1,6 @@
 //! Numbers, scalars, and JSON values that keep the order of their keys, as the wire does.
 
+use super::schema::fixed_schema;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 use std::fmt::{self, Write as _};
@@ -357,25 +358,6 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// Implements `JsonSchema` with a fixed schema.
-macro_rules! schema {
-    ($Type:ident, $schema:tt) => {
-        impl schemars::JsonSchema for $Type {
-            fn inline_schema() -> bool {
-                true
-            }
-
-            fn schema_name() -> std::borrow::Cow<'static, str> {
-                stringify!($Type).into()
-            }
-
-            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                schemars::json_schema!($schema)
-            }
-        }
-    };
-}
-
-schema!(Number, { "type": "number" });
-schema!(Scalar, { "type": ["boolean", "number", "string"] });
-schema!(Value, {});
+fixed_schema!(Number, { "type": "number" });
+fixed_schema!(Scalar, { "type": ["boolean", "number", "string"] });
+fixed_schema!(Value, {});
