@@ -38,15 +38,9 @@ impl Encoding {
     /// Returns the position of a byte offset.
     #[must_use]
     pub fn position(self, file: &SourceFile, offset: usize) -> Position {
-        let line = file.line(offset);
-        let start = file.lines(line, line).map_or(0, |(start, _)| start);
-        let before = file.text.get(start..offset.max(start));
-        let before = before
-            .or_else(|| file.text.get(start..))
-            .unwrap_or_default();
-        let column: usize = before.chars().map(|c| self.width(c)).sum();
+        let column: usize = file.before(offset).chars().map(|c| self.width(c)).sum();
         Position {
-            line: narrow(line.saturating_sub(1)),
+            line: narrow(file.line(offset) - 1),
             character: narrow(column),
         }
     }

@@ -331,9 +331,7 @@ fn remove(file: &SourceFile, field: Node<'_>, key: &str, edits: &mut Edits) {
 }
 
 fn is_flow(file: &SourceFile, node: Node<'_>) -> bool {
-    let span = node.span();
-    let text = file.text.get(span.start..span.end);
-    text.is_some_and(|text| text.starts_with(['{', '[']))
+    file.slice(node.span()).starts_with(['{', '['])
 }
 
 /// Returns the texts of a thing that was only seen in a recording.

@@ -81,7 +81,7 @@ fn code_name(
         None if is_flow => (before_key(first), format!("{pair}, ")),
         Some(last) => {
             let span = last.span();
-            let line = file.line(span.end.saturating_sub(1).max(span.start));
+            let line = file.last_line(span);
             let (_, end) = file.lines(line, line)?;
             let indent = indent(file, last.key.span());
             let newline = file.newline();
@@ -133,8 +133,5 @@ fn before_key(entry: Entry<'_>) -> Span {
 
 /// Returns blanks as wide as the text before a key on its line.
 fn indent(file: &SourceFile, key: Span) -> String {
-    let line = file.line(key.start);
-    let start = file.lines(line, line).map_or(key.start, |(start, _)| start);
-    let before = file.text.get(start..key.start).unwrap_or_default();
-    " ".repeat(before.chars().count())
+    " ".repeat(file.before(key.start).chars().count())
 }

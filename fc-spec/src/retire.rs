@@ -224,9 +224,8 @@ pub(crate) fn with_comments(file: &SourceFile, gone: Entry<'_>) -> Span {
     let mut start = above.map_or(key.start, |comment| comment.start.min(key.start));
     let end = gone.value.span().end.max(key.end);
     // One of the two blank lines is enough.
-    let is_blank = |line: usize| {
-        let text = file.lines(line, line);
-        let text = text.and_then(|(start, end)| file.text.get(start..end));
+    let is_blank = |line| {
+        let text = file.line_text(line);
         text.is_none_or(|text| text.trim().is_empty())
     };
     let first = file.line(start);
@@ -267,11 +266,7 @@ fn buried(file: &SourceFile, codes: Entry<'_>, code: &str, why: &Text) -> Option
 
 /// Returns the indentation of the line on which the span begins.
 fn indent(file: &SourceFile, span: Span) -> String {
-    let line = file.line(span.start);
-    let line = file.lines(line, line);
-    let text = line.and_then(|(start, end)| file.text.get(start..end));
-    let text = text.unwrap_or_default();
-    " ".repeat(text.len() - text.trim_start_matches(' ').len())
+    " ".repeat(file.indentation(span.start))
 }
 
 /// Returns `true` if the value is empty or begins on the line of its key.

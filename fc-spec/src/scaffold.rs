@@ -352,12 +352,8 @@ fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
     if key.line == source.line_col(section.key.span().start).line {
         return None;
     }
-    let rest = source.text.get(value.end..)?;
-    let end = rest
-        .find('\n')
-        .map_or(source.text.len(), |end| value.end + end + 1);
     Some(Place {
-        at: end,
+        at: source.next_line(source.line(value.end)),
         indent: key.column - 1,
         heading: false,
         is_above: false,

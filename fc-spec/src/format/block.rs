@@ -1,6 +1,6 @@
 //! A file as rows: everything that starts a line, with its comments.
 
-use super::comments::{Comments, Line, begins_line, column, indentation, line, on_one_line};
+use super::comments::{Comments, Line, begins_line, on_one_line};
 use super::{flow, scalar};
 use crate::source::{SourceFile, Span};
 use crate::syntax::{Node, NodeKind, Style, Tree};
@@ -102,9 +102,9 @@ impl<'t> Builder<'t> {
         let is_below = node.as_sequence().is_some() && starts.first() == Some(&begin);
         let column = if is_below {
             // A list at the column of its key starts after its first dash.
-            indentation(self.file, begin)
+            self.file.indentation(begin)
         } else {
-            column(self.file, begin)
+            begin - self.file.line_start(begin)
         };
         let mut rows = Vec::new();
         for (index, (key, value)) in children.into_iter().enumerate() {
@@ -112,7 +112,7 @@ impl<'t> Builder<'t> {
             let behind = match starts.get(index + 1) {
                 Some(start) => Next {
                     start: *start,
-                    column: Some(indentation(self.file, *start)),
+                    column: Some(self.file.indentation(*start)),
                 },
                 None if is_flow => Next {
                     start: node.span().end.min(next.start),
@@ -142,7 +142,7 @@ impl<'t> Builder<'t> {
             tail = self.comments.lines_before(node.span().end);
         }
         while let Some(span) = self.comments.take_if(next.start, |span| {
-            let column = indentation(self.file, span.start);
+            let column = self.file.indentation(span.start);
             !is_flow
                 && begins_line(self.file, span.start)
                 && column >= floor
@@ -201,7 +201,9 @@ impl<'t> Builder<'t> {
         } else {
             span.end
         };
-        let (_, line) = line(self.file, from);
+        let number = self.file.line(from);
+        let line = self.file.lines(number, number);
+        let line = line.map_or(from, |(_, end)| end);
         let mut taken = Vec::new();
         while let Some(comment) = self.comments.take_if(line.min(next.start), |_| true) {
             taken.push(comment);

@@ -31,12 +31,12 @@ impl<'t> Comments<'t> {
     pub fn keep_blank(&mut self, end: usize) {
         let rest = self.file.text.get(end..).unwrap_or_default();
         let next = end + rest.len() - rest.trim_start().len();
-        self.text_end = line_start(self.file, next);
+        self.text_end = self.file.line_start(next);
     }
 
     /// Returns `true` if byte `at` starts a line below a blank one that belongs to no block scalar.
     pub fn is_below_blank(&self, at: usize) -> bool {
-        blank_above(self.file, at) && line_start(self.file, at) != self.text_end
+        blank_above(self.file, at) && self.file.line_start(at) != self.text_end
     }
 
     /// Takes the first comment, if it starts before byte `end` and fits.
@@ -68,44 +68,18 @@ impl<'t> Comments<'t> {
 
     /// Returns the text of a comment.
     pub fn slice(&self, span: Span) -> &'t str {
-        let text = self.file.text.get(span.start..span.end);
-        text.unwrap_or_default()
+        self.file.slice(span)
     }
-}
-
-/// Returns the start of the line with byte `at`, and the end of its text.
-pub(super) fn line(file: &SourceFile, at: usize) -> (usize, usize) {
-    let number = file.line(at);
-    file.lines(number, number).unwrap_or((at, at))
-}
-
-fn line_start(file: &SourceFile, at: usize) -> usize {
-    line(file, at).0
-}
-
-/// Returns the number of columns before byte `at` on its line.
-pub(super) fn column(file: &SourceFile, at: usize) -> usize {
-    at - line_start(file, at).min(at)
-}
-
-/// Returns the indentation of the line with byte `at`.
-pub(super) fn indentation(file: &SourceFile, at: usize) -> usize {
-    let (start, end) = line(file, at);
-    let line = file.text.get(start..end).unwrap_or_default();
-    line.len() - line.trim_start_matches(' ').len()
 }
 
 /// Returns `true` if only spaces and the dashes of lists precede byte `at` on its line.
 pub(super) fn begins_line(file: &SourceFile, at: usize) -> bool {
-    let before = file.text.get(line_start(file, at)..at).unwrap_or_default();
-    before.trim_start_matches([' ', '-']).is_empty()
+    file.before(at).trim_start_matches([' ', '-']).is_empty()
 }
 
 /// Returns `true` if byte `at` starts a line below a blank one.
 fn blank_above(file: &SourceFile, at: usize) -> bool {
-    let above = file.line(at) - 1;
-    let above = file.lines(above, above);
-    let above = above.and_then(|(start, end)| file.text.get(start..end));
+    let above = file.line_text(file.line(at) - 1);
     above.is_some_and(|line| line.trim().is_empty()) && begins_line(file, at)
 }
 

@@ -1,7 +1,7 @@
 //! Merges the entries of a mapping.
 
 use super::value::Value;
-use super::{Above, Lines, Merge, last_line};
+use super::{Above, Lines, Merge};
 use crate::language::Cursor;
 use crate::language::grammar::{CHOICE, FIELD_KIND};
 use crate::syntax::{Entry, Node, Scalar};
@@ -56,8 +56,8 @@ impl<'t> Merge<'t> {
         let (our_head, their_head) = match above {
             Above::File => (0, 0),
             Above::Keys(our, their) => (
-                last_line(self.ours, our.span()),
-                last_line(self.theirs, their.span()),
+                self.ours.last_line(our.span()),
+                self.theirs.last_line(their.span()),
             ),
         };
 
@@ -174,6 +174,6 @@ fn same(one: Entry<'_>, other: Entry<'_>) -> bool {
 fn their_lines(merge: &Merge<'_>, theirs: &[Entry<'_>], head: usize, entry: Entry<'_>) -> Lines {
     let at = entry.key.span().start;
     let above = theirs.iter().rfind(|it| it.key.span().start < at);
-    let above = above.map_or(head, |it| last_line(merge.theirs, it.span()));
+    let above = above.map_or(head, |it| merge.theirs.last_line(it.span()));
     Lines::of(merge.theirs, above, entry.span())
 }

@@ -1,7 +1,7 @@
 //! Merges the items of a list.
 
 use super::value::Value;
-use super::{Above, Lines, Merge, last_line};
+use super::{Above, Lines, Merge};
 use crate::language::grammar::{CODES, COMMON};
 use crate::source::SourceFile;
 use crate::syntax::Node;
@@ -43,7 +43,7 @@ impl<'t> Merge<'t> {
         let base: Vec<_> = base.map(Value::of).collect();
         let ours = items(self.ours, our_key, &base, ours)?;
         let theirs = items(self.theirs, their_key, &base, theirs)?;
-        let mut below = last_line(self.ours, our_key.span());
+        let mut below = self.ours.last_line(our_key.span());
         let mut merged = Vec::new();
         for gap in 0..=base.len() {
             for item in ours.iter().filter(|it| it.gap == gap && it.is_new) {
@@ -72,7 +72,7 @@ fn items<'t>(
     base: &[Value<'t>],
     list: Node<'t>,
 ) -> Option<Vec<Item<'t>>> {
-    let mut above = last_line(file, key.span());
+    let mut above = file.last_line(key.span());
     let mut gap = 0;
     let mut items = Vec::new();
     for node in list.as_sequence()? {

@@ -133,10 +133,9 @@ struct Lines {
 
 impl Lines {
     fn of(file: &SourceFile, above: usize, span: Span) -> Self {
-        let last = last_line(file, span);
+        let last = file.last_line(span);
         let is_blank = |line: &usize| {
-            let text = file.lines(*line, *line);
-            let text = text.and_then(|(start, end)| file.text.get(start..end));
+            let text = file.line_text(*line);
             text.is_some_and(|text| text.trim().is_empty())
         };
         let blanks = (above + 1..last).take_while(is_blank).count();
@@ -153,14 +152,8 @@ impl Lines {
     }
 
     fn text(self, file: &SourceFile) -> Option<&str> {
-        let span = self.span(file)?;
-        file.text.get(span.start..span.end)
+        Some(file.slice(self.span(file)?))
     }
-}
-
-/// Returns the last line of a span.
-fn last_line(file: &SourceFile, span: Span) -> usize {
-    file.line(span.end.saturating_sub(1).max(span.start))
 }
 
 impl Merge<'_> {

@@ -25,7 +25,7 @@ impl Edits {
 
     /// Adds one or more lines below the last line of a span.
     pub fn add_line(&mut self, file: &SourceFile, span: Span, line: &str) {
-        let last = last_line(file, span);
+        let last = file.last_line(span);
         let (at, text) = match file.lines(last + 1, last + 1) {
             Some((next, _)) => (next, format!("{line}\n")),
             None if file.text.ends_with('\n') => (file.text.len(), format!("{line}\n")),
@@ -36,14 +36,9 @@ impl Edits {
 
     /// Removes all lines of a span.
     pub fn remove_lines(&mut self, file: &SourceFile, span: Span) {
-        let (first, last) = (file.line(span.start), last_line(file, span));
-        let start = file
-            .lines(first, first)
-            .map_or(span.start, |(start, _)| start);
-        let end = file
-            .lines(last + 1, last + 1)
-            .map_or(file.text.len(), |(start, _)| start);
-        self.replace(Span::new(span.file, start, end), String::new());
+        let end = file.next_line(file.last_line(span));
+        let lines = Span::new(span.file, file.line_start(span.start), end);
+        self.replace(lines, String::new());
     }
 
     /// Returns the place of the first replacement, for messages.
@@ -65,7 +60,7 @@ impl Edits {
             let (first, last) = if is_between_lines(file, *span) {
                 (file.line(span.start) - 1, file.line(span.start) - 1)
             } else {
-                (file.line(span.start), last_line(file, *span))
+                (file.line(span.start), file.last_line(*span))
             };
             match hunks.last_mut() {
                 Some((_, end)) if first <= *end + 1 => *end = last.max(*end),
@@ -77,8 +72,7 @@ impl Edits {
             let Some((start, _)) = file.lines(first, first) else {
                 continue;
             };
-            let end = file.lines(last + 1, last + 1);
-            let end = end.map_or(file.text.len(), |(start, _)| start);
+            let end = file.next_line(last);
             let new = made(&sorted, &file.text, start, end);
             let old = file.text.get(start..end).unwrap_or_default();
             if index > 0 {
@@ -124,22 +118,8 @@ pub(crate) fn changed_lines(old: &str, new: &str) -> String {
 
 /// Returns `true` for an insertion between two lines. It belongs to the line above.
 fn is_between_lines(file: &SourceFile, span: Span) -> bool {
-    let line = file.line(span.start);
-    span.start == span.end
-        && line > 1
-        && file
-            .lines(line, line)
-            .is_some_and(|(start, _)| start == span.start)
-}
-
-/// Returns the last line of a span.
-fn last_line(file: &SourceFile, span: Span) -> usize {
-    let end = if span.end > span.start {
-        span.end - 1
-    } else {
-        span.end
-    };
-    file.line(end)
+    let is_empty = span.start == span.end;
+    is_empty && file.line(span.start) > 1 && file.line_start(span.start) == span.start
 }
 
 /// Returns a part of a text with the replacements inside it.

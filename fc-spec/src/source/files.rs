@@ -59,16 +59,55 @@ impl SourceFile {
     /// Returns the line and column of a byte offset. An offset beyond the end counts as the end of the file.
     #[must_use]
     pub fn line_col(&self, offset: usize) -> LineCol {
-        let line = self.line(offset);
-        let start = self.line_starts.get(line - 1).copied().unwrap_or_default();
-        let before = self.text.get(start..offset);
-        let before = before
-            .or_else(|| self.text.get(start..))
-            .unwrap_or_default();
         LineCol {
-            line,
-            column: before.chars().count() + 1,
+            line: self.line(offset),
+            column: self.before(offset).chars().count() + 1,
         }
+    }
+
+    /// Returns the text between the start of a line and a byte offset in it. An offset beyond the end counts as the end
+    /// of the file.
+    #[must_use]
+    pub fn before(&self, offset: usize) -> &str {
+        let start = self.line_start(offset);
+        let before = self.text.get(start..offset);
+        before
+            .or_else(|| self.text.get(start..))
+            .unwrap_or_default()
+    }
+
+    /// Returns the start of the line with a byte offset.
+    pub(crate) fn line_start(&self, offset: usize) -> usize {
+        let starts = self.line_starts.get(self.line(offset) - 1);
+        starts.copied().unwrap_or_default()
+    }
+
+    /// Returns the start of the line after a line, or the end of the file.
+    pub(crate) fn next_line(&self, line: usize) -> usize {
+        let start = self.line_starts.get(line).copied();
+        start.unwrap_or(self.text.len())
+    }
+
+    /// Returns the last line of a span.
+    pub(crate) fn last_line(&self, span: Span) -> usize {
+        self.line(span.end.saturating_sub(1).max(span.start))
+    }
+
+    /// Returns the text of a span.
+    pub(crate) fn slice(&self, span: Span) -> &str {
+        self.text.get(span.start..span.end).unwrap_or_default()
+    }
+
+    /// Returns the text of a line, or `None` if there is no such line.
+    pub(crate) fn line_text(&self, line: usize) -> Option<&str> {
+        let (start, end) = self.lines(line, line)?;
+        self.text.get(start..end)
+    }
+
+    /// Returns the number of spaces at the start of the line with a byte offset.
+    pub(crate) fn indentation(&self, offset: usize) -> usize {
+        let line = self.line_text(self.line(offset)).unwrap_or_default();
+        line.len() - line.trim_start_matches(' ').len()
     }
 
     /// Returns the byte range of the lines `first` to `last`, both included and counted from 1. The range excludes the
@@ -76,12 +115,7 @@ impl SourceFile {
     #[must_use]
     pub fn lines(&self, first: usize, last: usize) -> Option<(usize, usize)> {
         let start = *self.line_starts.get(first.checked_sub(1)?)?;
-        let end = self
-            .line_starts
-            .get(last)
-            .copied()
-            .unwrap_or(self.text.len());
-        let lines = self.text.get(start..end)?;
+        let lines = self.text.get(start..self.next_line(last))?;
         let lines = lines.strip_suffix('\n').unwrap_or(lines);
         let lines = lines.strip_suffix('\r').unwrap_or(lines);
         Some((start, start + lines.len()))
@@ -168,9 +202,7 @@ impl Sources {
     /// Returns the text of a span.
     #[must_use]
     pub fn slice(&self, span: Span) -> &str {
-        self.get(span.file)
-            .and_then(|file| file.text.get(span.start..span.end))
-            .unwrap_or_default()
+        self.get(span.file).map_or("", |file| file.slice(span))
     }
 
     /// Returns the line of a span's start.
