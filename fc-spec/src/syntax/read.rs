@@ -9,8 +9,7 @@ use super::find::{Found, find};
 use super::limits;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::model::Text;
-use crate::source::Span;
-use crate::source::{SourceFile, Sources};
+use crate::source::{SourceFile, Sources, Span};
 
 /// Reads every `*.yaml` directly in `root/spec` and in `root/spec/commands`, sorted by path.
 ///
@@ -19,11 +18,7 @@ use crate::source::{SourceFile, Sources};
 ///
 /// **Architecture invariant.** Only this module and the output module access the disk.
 pub fn read_dir(root: &Path, spec: &Path, faults: &mut Faults) -> Sources {
-    let mut reader = Reader {
-        sources: Sources::new(),
-        faults,
-        bytes: limits::SPEC_BYTES,
-    };
+    let mut reader = Reader::new(faults);
     for (index, item) in find(root, spec).into_iter().enumerate() {
         let path = item.path;
         if index == limits::FILES {
@@ -68,11 +63,7 @@ pub fn read_files<'p>(
     files: impl IntoIterator<Item = (String, &'p Path)>,
     faults: &mut Faults,
 ) -> Sources {
-    let mut reader = Reader {
-        sources: Sources::new(),
-        faults,
-        bytes: limits::SPEC_BYTES,
-    };
+    let mut reader = Reader::new(faults);
     for (index, (path, disk)) in files.into_iter().enumerate() {
         if index == limits::FILES {
             let message = text!(
@@ -90,18 +81,9 @@ pub fn read_files<'p>(
 
 /// Reads a text from elsewhere, such as standard input, under this path.
 pub fn read_bytes(path: String, bytes: Vec<u8>, faults: &mut Faults) -> Sources {
-    let mut reader = Reader {
-        sources: Sources::new(),
-        faults,
-        bytes: limits::SPEC_BYTES,
-    };
+    let mut reader = Reader::new(faults);
     if bytes.len() > limits::FILE_BYTES {
-        let message = text!(
-            "`{path}` 超过 {limit} MiB",
-            "`{path}` is larger than {limit} MiB",
-            limit = limits::FILE_BYTES >> 20
-        );
-        reader.refuse(FaultCode::TooLarge, path, message, None);
+        reader.too_large(path, None);
     } else {
         reader.decode(path, bytes);
     }
@@ -115,7 +97,15 @@ struct Reader<'a> {
     bytes: usize,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    fn new(faults: &'a mut Faults) -> Self {
+        Self {
+            sources: Sources::new(),
+            faults,
+            bytes: limits::SPEC_BYTES,
+        }
+    }
+
     fn read(&mut self, path: String, disk: &Path) {
         if let Some(message) = not_a_file(&path, disk) {
             return self.refuse(FaultCode::Unreadable, path, message, None);
@@ -123,16 +113,11 @@ impl Reader<'_> {
         match read_at_most(disk, limits::FILE_BYTES) {
             Err(error) => self.unreadable(path, &error),
             Ok(None) => {
-                let message = text!(
-                    "`{path}` 超过 {limit} MiB",
-                    "`{path}` is larger than {limit} MiB",
-                    limit = limits::FILE_BYTES >> 20
-                );
                 let advice = text!(
                     "拆分它：每组接口一个文件",
                     "split it: one file per command group"
                 );
-                self.refuse(FaultCode::TooLarge, path, message, Some(advice));
+                self.too_large(path, Some(advice));
             }
             Ok(Some(bytes)) => {
                 if let Some(rest) = self.bytes.checked_sub(bytes.len()) {
@@ -191,6 +176,15 @@ impl Reader<'_> {
             "cannot read `{path}`: {error}"
         );
         self.refuse(FaultCode::Unreadable, path, message, None);
+    }
+
+    fn too_large(&mut self, path: String, advice: Option<Text>) {
+        let limit = limits::FILE_BYTES >> 20;
+        let message = text!(
+            "`{path}` 超过 {limit} MiB",
+            "`{path}` is larger than {limit} MiB"
+        );
+        self.refuse(FaultCode::TooLarge, path, message, advice);
     }
 
     /// Reports an error about a whole file. The sources get the file without its text.
