@@ -19,7 +19,7 @@ use crate::diagnostic::Faults;
 use crate::language::Cursor;
 use crate::load::check_root;
 use crate::source::{Edits, FileId, SourceFile, changed_lines};
-use crate::syntax::parse;
+use crate::syntax::{parse, parse_faultless};
 
 /// The reason why a text is not formatted.
 #[derive(Clone, Debug)]
@@ -53,14 +53,13 @@ pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
         return Err(Refused::Faults(faults));
     }
 
-    let unread = |_| Refused::NotTheSame;
     let source = SourceFile::new(source.path.as_str(), text.replace("\r\n", "\n"));
-    let tree = read(file, &source.text).map_err(unread)?;
+    let tree = parse_faultless(file, &source.text).ok_or(Refused::NotTheSame)?;
     let mut root = block::build(&tree, &source);
     let head = order::head(&mut root);
     order::arrange(&mut root, top, 0, &source);
     let new = printer::print(&head, &root, top, &source.text);
-    let again = read(file, &new).map_err(unread)?;
+    let again = parse_faultless(file, &new).ok_or(Refused::NotTheSame)?;
     if !same::same((&tree, &source.text), (&again, &new), top) {
         return Err(Refused::NotTheSame);
     }
@@ -97,13 +96,4 @@ fn formatted_like(before: &SourceFile, text: &str) -> Option<String> {
         return None;
     }
     format(file, &SourceFile::new(before.path.as_str(), text)).ok()
-}
-
-/// Parses a text, and fails if it has errors.
-fn read(file: FileId, text: &str) -> Result<crate::syntax::Tree<'_>, Faults> {
-    let mut faults = Faults::new();
-    match parse(file, text, &mut faults) {
-        Some(tree) if !faults.has_errors() => Ok(tree),
-        _ => Err(faults),
-    }
 }

@@ -10,15 +10,8 @@ pub(super) fn same(
     (new, new_text): (&Tree<'_>, &str),
     cursor: Cursor,
 ) -> bool {
-    comments(old, old_text) == comments(new, new_text) && same_node(old.root(), new.root(), cursor)
-}
-
-fn comments<'t>(tree: &Tree<'_>, text: &'t str) -> Vec<&'t str> {
-    let spans = tree.comments();
-    let texts = spans.filter_map(|span| text.get(span.start..span.end));
-    let mut texts: Vec<&str> = texts.collect();
-    texts.sort_unstable();
-    texts
+    old.sorted_comments(old_text) == new.sorted_comments(new_text)
+        && same_node(old.root(), new.root(), cursor)
 }
 
 fn same_node(old: Node<'_>, new: Node<'_>, cursor: Cursor) -> bool {

@@ -11,11 +11,10 @@ mod entries;
 mod items;
 mod value;
 
-use crate::diagnostic::Faults;
 use crate::format::format;
 use crate::language::Cursor;
 use crate::source::{Edits, FileId, SourceFile, Span};
-use crate::syntax::{Node, Tree, parse};
+use crate::syntax::{Node, parse_faultless};
 use value::Value;
 
 /// Merges `ours` and `theirs`, which both started from `base`. Returns the text of `ours` with the additions, changes
@@ -31,9 +30,9 @@ pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
         let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
         SourceFile::new("", text.replace("\r\n", "\n"))
     });
-    let base_tree = read(&base)?;
-    let our_tree = read(&ours)?;
-    let their_tree = read(&theirs)?;
+    let base_tree = parse_faultless(FILE, &base.text)?;
+    let our_tree = parse_faultless(FILE, &ours.text)?;
+    let their_tree = parse_faultless(FILE, &theirs.text)?;
     let mut merge = Merge {
         ours: &ours,
         theirs: &theirs,
@@ -44,9 +43,9 @@ pub fn merge(base: &str, ours: &str, theirs: &str) -> Option<String> {
     let [base_root, our_root, their_root] = roots;
     let meant = merge.entries(Above::File, root, Some(base_root), our_root, their_root)?;
     let merged = SourceFile::new("", merge.edits.apply(&ours));
-    let merged_tree = read(&merged)?;
+    let merged_tree = parse_faultless(FILE, &merged.text)?;
     let is_meant = Value::of(merged_tree.root()) == meant
-        && value::comments(&merged_tree, &merged)
+        && merged_tree.sorted_comments(&merged.text)
             == value::merged_comments([
                 (&base_tree, &base),
                 (&our_tree, &ours),
@@ -73,11 +72,6 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The three files are never in one list, so they can share an id.
 const FILE: FileId = FileId(0);
-
-fn read(file: &SourceFile) -> Option<Tree<'_>> {
-    let mut faults = Faults::new();
-    parse(FILE, &file.text, &mut faults).filter(|_| !faults.has_errors())
-}
 
 /// The parent of the entries of a mapping or the items of a list.
 #[derive(Clone, Copy)]

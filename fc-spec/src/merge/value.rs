@@ -27,21 +27,13 @@ impl<'t> Value<'t> {
     }
 }
 
-/// Returns the comments of a file, sorted.
-pub(super) fn comments<'t>(tree: &Tree<'_>, file: &'t SourceFile) -> Vec<&'t str> {
-    let spans = tree.comments();
-    let texts = spans.filter_map(|span| file.text.get(span.start..span.end));
-    let mut texts: Vec<&str> = texts.collect();
-    texts.sort_unstable();
-    texts
-}
-
 /// Returns the comments of the result: those of ours, with the additions and without the removals of theirs. Returns
 /// `None` if both have removed the same comment.
 pub(super) fn merged_comments<'t>(
     [base, ours, theirs]: [(&Tree<'_>, &'t SourceFile); 3],
 ) -> Option<Vec<&'t str>> {
-    let [base, mut merged, theirs] = [base, ours, theirs].map(|(tree, file)| comments(tree, file));
+    let comments = |(tree, file): (&Tree<'_>, &'t SourceFile)| tree.sorted_comments(&file.text);
+    let [base, mut merged, theirs] = [base, ours, theirs].map(comments);
     let mut added = theirs;
     for comment in base {
         if let Some(at) = added.iter().position(|it| *it == comment) {

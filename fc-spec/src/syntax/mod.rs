@@ -30,7 +30,7 @@ pub(crate) use control::visible;
 pub use find::is_spec_file;
 pub use node::{Entries, Entry, Items, Node, NodeKind, Scalar, Style};
 pub use parse::parse;
-pub(crate) use parse::parse_parts;
+pub(crate) use parse::{parse_faultless, parse_parts};
 pub(crate) use quote::quoted;
 pub use read::{read_bytes, read_dir, read_files};
 pub use tree::Tree;

@@ -23,6 +23,12 @@ pub fn parse<'s>(file: FileId, text: &'s str, faults: &mut Faults) -> Option<Tre
     tree.filter(|_| is_whole)
 }
 
+/// Parses a text that must have no errors. Returns `None` for any other text.
+pub(crate) fn parse_faultless(file: FileId, text: &str) -> Option<Tree<'_>> {
+    let mut faults = Faults::new();
+    parse(file, text, &mut faults).filter(|_| !faults.has_errors())
+}
+
 /// Like [`parse`], but also returns a tree if a part of the file is not YAML. The tree lacks the entries with such
 /// text, and they are marked as hidden. The flag is `true` for a complete tree.
 pub(crate) fn parse_parts<'s>(

@@ -86,6 +86,16 @@ impl<'s> Tree<'s> {
         self.spans(&self.parts.comments)
     }
 
+    /// Returns the comments of the tree's text, sorted.
+    pub(crate) fn sorted_comments<'t>(&self, text: &'t str) -> Vec<&'t str> {
+        let texts = self
+            .comments()
+            .filter_map(|span| text.get(span.start..span.end));
+        let mut texts: Vec<&str> = texts.collect();
+        texts.sort_unstable();
+        texts
+    }
+
     pub(super) fn push_comment(&mut self, span: Span) {
         self.parts.to_mut().comments.push(span.start..span.end);
     }
