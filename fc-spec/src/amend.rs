@@ -2,7 +2,7 @@
 //!
 //! New fields, values and results say where they come from. The owner of the protocol writes their meaning.
 
-use crate::format::edited;
+use crate::format::Revised;
 use crate::index::{DefId, Index, entry_at};
 use crate::language::grammar::{
     COMMAND, ENUM, ENUM_VALUE, Enum, EnumValue, FIELD, FILE, Field, ITEMS, OBJECT, REPORT, Struct,
@@ -102,39 +102,20 @@ impl FieldKey {
     }
 }
 
-/// A spec with an amendment.
-#[derive(Clone, Debug)]
-pub struct Amended {
-    /// The files.
-    pub sources: Sources,
-    /// The path of the changed file.
-    pub path: String,
-    /// The changed lines as a diff without line numbers.
-    pub diff: String,
-}
-
 /// Makes an amendment. `model` is the model of `sources`.
 ///
 /// Returns `None` if the spec has no such type, field or state, or if the field is in the short form. It does not check the
 /// result: [`load`](crate::load::load) reports a name that is taken.
 #[must_use]
-pub fn amend(sources: &Sources, model: &Model, amendment: &Amendment) -> Option<Amended> {
+pub fn amend(sources: &Sources, model: &Model, amendment: &Amendment) -> Option<Revised> {
     let index = Index::new(Trees::new(sources));
     let editor = Editor {
         index: &index,
         model,
     };
     let edits = editor.edits(amendment)?;
-    let source = sources.get(edits.place()?.file)?;
-    let new = edited(source, &edits);
-    let path = source.path.clone();
-    let mut amended = sources.clone();
-    amended.replace(SourceFile::new(path.as_str(), new.text));
-    Some(Amended {
-        sources: amended,
-        path,
-        diff: new.diff,
-    })
+    let file = sources.get(edits.place()?.file)?;
+    Some(Revised::new(sources, file, &edits))
 }
 
 struct Editor<'e> {

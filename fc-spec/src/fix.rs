@@ -4,9 +4,9 @@
 //! [`certain`] identifies these. [`fix_all`] applies them and checks again, until no such fix is left.
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, Fix};
-use crate::format::edited;
+use crate::format::Revised;
 use crate::model::Text;
-use crate::source::{Edits, FileId, SourceFile, Sources, Span};
+use crate::source::{Edits, FileId, Sources, Span};
 use crate::syntax::quoted;
 use std::collections::BTreeMap;
 
@@ -153,9 +153,8 @@ fn with(
     fixes: &[(&Diagnostic, &Fix)],
     done: &mut Vec<Done>,
 ) -> Sources {
-    let mut changed = sources.clone();
     let Some(source) = sources.get(file) else {
-        return changed;
+        return sources.clone();
     };
     let mut edits = Edits::default();
     for (fault, fix) in fixes {
@@ -167,6 +166,5 @@ fn with(
             message: fix.message.clone(),
         });
     }
-    changed.replace(SourceFile::new(&source.path, edited(source, &edits).text));
-    changed
+    Revised::new(sources, source, &edits).sources
 }

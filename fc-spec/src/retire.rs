@@ -4,7 +4,7 @@
 //! uses are removed as well.
 
 use crate::diagnostic::{FaultCode, Faults, nearest};
-use crate::format::{Edited, edited};
+use crate::format::Revised;
 use crate::language::grammar::{CODES, FILE, RETIRED, TEXT};
 use crate::load::Trees;
 use crate::model::{Kind, Languages, Model, Text};
@@ -165,10 +165,9 @@ impl Rest {
                 what: what.to_owned(),
             });
         };
-        let Edited { text, diff } = edited(file, &edits);
-        self.diffs.push((file.path.clone(), diff));
-        let file = SourceFile::new(&file.path, text);
-        self.sources.replace(file);
+        let revised = Revised::new(&self.sources, file, &edits);
+        self.diffs.push((revised.path, revised.diff));
+        self.sources = revised.sources;
         Ok(())
     }
 }

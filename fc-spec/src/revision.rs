@@ -1,22 +1,11 @@
 //! Edits of a spec for a release: sets the version and removes old waivers.
 
 use crate::diagnostic::Faults;
-use crate::format::{Edited, edited};
+use crate::format::Revised;
 use crate::language::grammar::{FILE, PROTOCOL};
 use crate::retire::{is_flow, with_comments};
 use crate::source::{Edits, SourceFile, Sources, Span};
 use crate::syntax::{Tree, parse, quoted};
-
-/// A spec after one edit.
-#[derive(Clone, Debug)]
-pub struct Revised {
-    /// The files.
-    pub sources: Sources,
-    /// The path of the edited file.
-    pub path: String,
-    /// The changed lines, as a diff without line numbers. Empty if the edit changes nothing.
-    pub diff: String,
-}
 
 /// Sets the version of the protocol. All other bytes stay the same.
 ///
@@ -62,21 +51,9 @@ fn revised(
     sources: &Sources,
     edits: impl Fn(&Tree<'_>, &SourceFile) -> Option<Edits>,
 ) -> Option<Revised> {
-    let (file, edits) = sources.iter().find_map(|(id, file)| {
+    sources.iter().find_map(|(id, file)| {
         let tree = parse(id, &file.text, &mut Faults::new())?;
-        Some((file, edits(&tree, file)?))
-    })?;
-    let Edited { text, mut diff } = edited(file, &edits);
-    if text == file.text {
-        diff.clear();
-    }
-    let path = file.path.clone();
-    let mut sources = sources.clone();
-    sources.replace(SourceFile::new(&path, text));
-    Some(Revised {
-        sources,
-        path,
-        diff,
+        Some(Revised::new(sources, file, &edits(&tree, file)?))
     })
 }
 

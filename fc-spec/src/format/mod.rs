@@ -18,7 +18,7 @@ mod scalar;
 use crate::diagnostic::Faults;
 use crate::language::Cursor;
 use crate::load::check_root;
-use crate::source::{Edits, FileId, SourceFile, changed_lines};
+use crate::source::{Edits, FileId, SourceFile, Sources, changed_lines};
 use crate::syntax::{parse, parse_faultless};
 
 /// The reason why a text is not formatted.
@@ -64,6 +64,35 @@ pub fn format(file: FileId, source: &SourceFile) -> Result<String, Refused> {
         return Err(Refused::NotTheSame);
     }
     Ok(new.replace('\n', newline))
+}
+
+/// A spec after edits of one of its files.
+#[derive(Clone, Debug)]
+pub struct Revised {
+    /// The files.
+    pub sources: Sources,
+    /// The path of the edited file.
+    pub path: String,
+    /// The changed lines, as a diff without line numbers. Empty if the edits change nothing.
+    pub diff: String,
+}
+
+impl Revised {
+    /// Applies edits to a file of a spec.
+    pub(crate) fn new(sources: &Sources, file: &SourceFile, edits: &Edits) -> Self {
+        let Edited { text, mut diff } = edited(file, edits);
+        if text == file.text {
+            diff.clear();
+        }
+        let path = file.path.clone();
+        let mut sources = sources.clone();
+        sources.replace(SourceFile::new(&path, text));
+        Self {
+            sources,
+            path,
+            diff,
+        }
+    }
 }
 
 /// A file with edits.

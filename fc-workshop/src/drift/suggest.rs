@@ -3,8 +3,9 @@
 use super::process::ARROW;
 use super::{Deviation, DeviationKind};
 use fc_reflect::BodyErrorKind;
-use fc_spec::amend::{Amended, Amendment, FieldKey, amend};
+use fc_spec::amend::{Amendment, FieldKey, amend};
 use fc_spec::diagnostic::Faults;
+use fc_spec::format::Revised;
 use fc_spec::load::load;
 use fc_spec::model::{
     EnumType, Field, IntKind, Model, Number, Quirk, Scalar, StructType, Type, TypeDef, TypeShape,
@@ -18,7 +19,7 @@ use serde_json::Value;
 ///
 /// The edit says that the peers are right. If the spec is right, change the peers instead.
 #[must_use]
-pub fn suggest(sources: &Sources, model: &Model, deviation: &Deviation<'_>) -> Option<Amended> {
+pub fn suggest(sources: &Sources, model: &Model, deviation: &Deviation<'_>) -> Option<Revised> {
     let amended = amend(sources, model, &amendment(model, deviation)?)?;
     let model = load(&amended.sources, &mut Faults::new()).model();
     model.map(|_| amended)
