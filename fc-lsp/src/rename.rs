@@ -30,10 +30,7 @@ pub fn prepare_rename(
 fn name(snapshot: &Snapshot, item: &fc_spec::index::DefId) -> String {
     let owner = item.owner.as_deref();
     let owner = owner.and_then(|owner| snapshot.known().analysis().types().named(owner));
-    let field = owner.and_then(|owner| match &owner.shape {
-        fc_spec::model::TypeShape::Struct(shape) => shape.field(&item.name),
-        _ => None,
-    });
+    let field = owner.and_then(|owner| owner.shape.structure()?.field(&item.name));
     field.map_or(&item.name, |field| &field.name).clone()
 }
 

@@ -258,14 +258,9 @@ impl<'m> Samples<'m> {
     fn is_open(&self, ty: &Type, open: &[String]) -> bool {
         match ty {
             Type::Named(named) => {
-                is_in(open, named)
-                    || match &self.model.types.get(named).shape {
-                        TypeShape::OneOf(choice) => {
-                            let first = choice.variants.first();
-                            first.is_some_and(|variant| is_in(open, &variant.ty))
-                        }
-                        TypeShape::Struct(_) | TypeShape::Enum(_) => false,
-                    }
+                let choice = self.model.types.get(named).shape.choice();
+                let first = choice.and_then(|choice| choice.variants.first());
+                is_in(open, named) || first.is_some_and(|variant| is_in(open, &variant.ty))
             }
             Type::Array(item) => self.is_open(item, open),
             _ => false,
@@ -296,11 +291,7 @@ impl<'m> Samples<'m> {
                     TypeShape::Enum(_) => None,
                 };
                 let entries = entries.iter().map(|(key, value)| {
-                    let field = shape.and_then(|shape| {
-                        let mut fields = shape.fields.iter();
-                        fields.find(|field| field.wire == *key)
-                    });
-                    let value = match field {
+                    let value = match shape.and_then(|shape| shape.field(key)) {
                         Some(field) => self.canonical(&field.ty, field.wire_form, value),
                         None => value.clone(),
                     };

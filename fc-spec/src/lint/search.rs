@@ -61,10 +61,8 @@ impl<'m> Search<'m> {
 
     /// Returns every struct, including bodies and inline objects.
     pub fn structs(&self) -> impl Iterator<Item = (&'m TypeDef, &'m StructType)> + use<'m> {
-        self.model.types.iter().filter_map(|ty| match &ty.shape {
-            TypeShape::Struct(shape) => Some((ty, shape)),
-            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-        })
+        let types = self.model.types.iter();
+        types.filter_map(|ty| Some((ty, ty.shape.structure()?)))
     }
 
     /// Returns every field with the type that holds it.

@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::rule::rules;
 use super::search::{Search, Subject};
-use crate::model::{Deprecation, TypeShape, is_past};
+use crate::model::{Deprecation, is_past};
 use crate::text;
 
 rules! { Sunset
@@ -20,12 +20,9 @@ fn withdrawn<'m>(search: &Search<'m>) -> Vec<(Subject<'m>, &'m Deprecation)> {
     let operations = operations.map(|it| (Subject::Operation(it), it.deprecated.as_ref()));
     let fields = search.fields();
     let fields = fields.map(|(ty, it)| (Subject::Field(ty, it), it.details().deprecated.as_ref()));
-    let choices = search.model.types.iter().filter_map(|ty| match &ty.shape {
-        TypeShape::OneOf(choice) => Some((ty, choice)),
-        TypeShape::Struct(_) | TypeShape::Enum(_) => None,
-    });
-    let variants = choices.flat_map(|(ty, choice)| {
-        let variants = choice.variants.iter();
+    let variants = search.model.types.iter().flat_map(|ty| {
+        let choice = ty.shape.choice().into_iter();
+        let variants = choice.flat_map(|choice| &choice.variants);
         variants.map(move |it| (Subject::Variant(ty, it), it.deprecated.as_ref()))
     });
     let all = operations.chain(fields).chain(variants);

@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::rule::rules;
 use super::search::{Search, Subject};
-use crate::model::{Direction, Exchange, Field, IntKind, Type, TypeShape, WireForm};
+use crate::model::{Direction, Exchange, Field, IntKind, Type, WireForm};
 use crate::text;
 
 rules! { Wire
@@ -71,8 +71,8 @@ fn closed_enum_in_report(search: &mut Search<'_>) {
         }
         for field in shape.fields.iter().filter(|field| !field.optional) {
             let named = field.ty.innermost();
-            let shape = named.map(|named| &search.model.types.get(named).shape);
-            if matches!(shape, Some(TypeShape::Enum(shape)) if shape.closed) {
+            let shape = named.and_then(|named| search.model.types.get(named).shape.enumeration());
+            if shape.is_some_and(|shape| shape.closed) {
                 search.report(
                     Subject::Field(ty, field),
                     text!(

@@ -116,6 +116,35 @@ pub enum TypeShape {
     OneOf(OneOf),
 }
 
+impl TypeShape {
+    /// Returns the struct, if it is one.
+    #[must_use]
+    pub fn structure(&self) -> Option<&StructType> {
+        match self {
+            Self::Struct(shape) => Some(shape),
+            Self::Enum(_) | Self::OneOf(_) => None,
+        }
+    }
+
+    /// Returns the enum, if it is one.
+    #[must_use]
+    pub fn enumeration(&self) -> Option<&EnumType> {
+        match self {
+            Self::Enum(shape) => Some(shape),
+            Self::Struct(_) | Self::OneOf(_) => None,
+        }
+    }
+
+    /// Returns the one-of, if it is one.
+    #[must_use]
+    pub fn choice(&self) -> Option<&OneOf> {
+        match self {
+            Self::OneOf(choice) => Some(choice),
+            Self::Struct(_) | Self::Enum(_) => None,
+        }
+    }
+}
+
 /// An object with known keys; unknown keys are kept.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct StructType {

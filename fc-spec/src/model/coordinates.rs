@@ -1,6 +1,6 @@
 //! Coordinate systems and stores, from `coordinates:` and `stores:`.
 
-use super::{Field, Location, Model, Text, TypeShape};
+use super::{Field, Location, Model, Text};
 use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,9 +56,9 @@ impl Model {
     #[must_use]
     pub fn coordinates_of<'m>(&'m self, field: &'m Field) -> Option<&'m str> {
         let own = field.details().coordinates.as_deref();
-        let of_type = || match &self.types.get(field.ty.innermost()?).shape {
-            TypeShape::Struct(shape) => shape.coordinates.as_deref(),
-            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+        let of_type = || {
+            let ty = self.types.get(field.ty.innermost()?);
+            ty.shape.structure()?.coordinates.as_deref()
         };
         own.or_else(of_type)
     }

@@ -2,7 +2,7 @@
 //!
 //! The dump has the same parts as the model. Only the layers below the messages are grouped under `protocol`.
 
-use super::{Condition, Dump, Model, Text, TypeShape, Unlinked};
+use super::{Condition, Dump, Model, Text, Unlinked};
 use crate::{names, text};
 use serde::Deserialize;
 
@@ -133,7 +133,7 @@ impl Model {
     /// Checks that the fields in every condition exist in the same struct.
     fn check_conditions(&self) -> Result<(), Unlinked> {
         for ty in &self.types {
-            let TypeShape::Struct(shape) = &ty.shape else {
+            let Some(shape) = ty.shape.structure() else {
                 continue;
             };
             for field in &shape.fields {

@@ -25,10 +25,8 @@ impl Model {
     /// Returns the first place with a value that does not fit its type: a field as `Type.key`, or a table.
     pub(super) fn misfit(&self) -> Option<String> {
         let mut fields = self.types.iter().filter_map(|ty| {
-            let TypeShape::Struct(shape) = &ty.shape else {
-                return None;
-            };
-            let field = shape.fields.iter().find(|field| !self.fits_field(field))?;
+            let mut fields = ty.shape.structure()?.fields.iter();
+            let field = fields.find(|field| !self.fits_field(field))?;
             Some(format!("{}.{}", ty.name, field.wire))
         });
         let mut tables = self.tables.iter().filter(|table| {

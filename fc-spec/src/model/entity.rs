@@ -1,6 +1,6 @@
 //! Entities, from `entities:`.
 
-use super::{Location, Model, Text, Type, TypeShape};
+use super::{Location, Model, Text, Type};
 use crate::names;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,10 +23,7 @@ impl Model {
     /// Returns the type of the ids of an entity, which is the type of every field that refers to it. A checked model has exactly one.
     #[must_use]
     pub fn id_type(&self, entity: &Entity) -> Option<&Type> {
-        let structs = self.types.iter().filter_map(|ty| match &ty.shape {
-            TypeShape::Struct(shape) => Some(shape),
-            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-        });
+        let structs = self.types.iter().filter_map(|ty| ty.shape.structure());
         let mut fields = structs.flat_map(|shape| &shape.fields);
         let field = fields.find(|field| field.details().refers.as_ref() == Some(&entity.name))?;
         Some(field.ty.item())

@@ -58,18 +58,11 @@ pub(crate) fn way<'t>(
         let field = shape?.fields.iter().find(|field| field.wire == *key)?;
         fields.push(field);
         shape = match &field.ty {
-            Type::Named(named) => find(named).and_then(structure),
+            Type::Named(named) => find(named).and_then(|ty| ty.shape.structure()),
             _ => None,
         };
     }
     (!fields.is_empty()).then_some(fields)
-}
-
-fn structure(ty: &TypeDef) -> Option<&StructType> {
-    match &ty.shape {
-        TypeShape::Struct(shape) => Some(shape),
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-    }
 }
 
 /// The maximum number of fields to inspect in one body. The check reports larger bodies anyway.
@@ -123,10 +116,7 @@ impl Model {
         let Type::Named(named) = &self.way(body, keys).last()?.ty else {
             return None;
         };
-        match &self.types.get(named).shape {
-            TypeShape::Enum(shape) => Some((named, shape)),
-            TypeShape::Struct(_) | TypeShape::OneOf(_) => None,
-        }
+        Some((named, self.types.get(named).shape.enumeration()?))
     }
 
     /// Checks that every key in the process data of an operation exists in its messages.

@@ -3,8 +3,8 @@
 use super::View;
 use crate::model::process::{Find, way};
 use crate::model::{
-    Accepted, AcceptedIn, EnumType, Exchange, KeyPath, Operation, StructRef, StructType, Type,
-    TypeRef, TypeShape, Types, Value,
+    Accepted, AcceptedIn, EnumType, Exchange, KeyPath, Operation, StructRef, Type, TypeRef, Types,
+    Value,
 };
 use std::collections::HashSet;
 
@@ -78,17 +78,10 @@ impl View<'_> {
             else {
                 return false;
             };
-            shape = self.inside(&field.ty);
+            let inside = field.ty.innermost();
+            shape = inside.and_then(|named| self.model.types.get(named).shape.structure());
         }
         true
-    }
-
-    /// Returns the struct of a field, or of the items of its list.
-    fn inside(&self, ty: &Type) -> Option<&StructType> {
-        match &self.model.types.get(ty.innermost()?).shape {
-            TypeShape::Struct(shape) => Some(shape),
-            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-        }
     }
 }
 
@@ -126,15 +119,10 @@ fn keep_accepted(mut accepted: Accepted, types: &Types) -> Option<Accepted> {
 /// Returns the enum at the path of a body. It finds types by name, because the reduced model is not linked yet.
 fn enum_at<'t>(types: &'t Types, body: &StructRef, path: &[String]) -> Option<&'t EnumType> {
     let find: Find<'_, 't> = &|named| types.named(named.name());
-    let TypeShape::Struct(shape) = &find(body)?.shape else {
-        return None;
-    };
-    let Type::Named(named) = &way(find, shape, path)?.last()?.ty else {
-        return None;
-    };
-    match &find(named)?.shape {
-        TypeShape::Enum(shape) => Some(shape),
-        TypeShape::Struct(_) | TypeShape::OneOf(_) => None,
+    let shape = find(body)?.shape.structure()?;
+    match &way(find, shape, path)?.last()?.ty {
+        Type::Named(named) => find(named)?.shape.enumeration(),
+        _ => None,
     }
 }
 
