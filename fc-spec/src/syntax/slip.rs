@@ -30,8 +30,8 @@ pub(super) fn of_scalar(span: Span, text: &str) -> Option<Diagnostic> {
     if text.len() > LINE_BYTES {
         return None;
     }
-    let slips = Scanner::new(text, false).slips();
-    fault(span.file, text, span.start, &slips)
+    let scanner = Scanner::of(text, false);
+    fault(span.file, text, span.start, &scanner.found)
 }
 
 /// Returns the slip that causes an error of the parser at byte `at`. The parser was reading the lines from byte `from`.
@@ -59,7 +59,7 @@ pub(super) fn behind_error(
             .filter(|line| line.len() <= LINE_BYTES)?;
         let in_brackets = text
             .get(first..start)
-            .is_some_and(|before| opened(before) > 0);
+            .is_some_and(|before| !Scanner::of(before, false).open.is_empty());
         let helps = |slips: &[Slip]| {
             if slips.is_empty() {
                 return false;
@@ -70,8 +70,7 @@ pub(super) fn behind_error(
             let beyond = (end_of_line(at.max(start)) + fixed.len()).checked_sub(range.end);
             beyond.is_some_and(|beyond| reaches(&fixed, beyond))
         };
-        let mut scanner = Scanner::new(line, in_brackets);
-        while scanner.step().is_some() {}
+        let scanner = Scanner::of(line, in_brackets);
         let is_indentation = scanner.found.first().is_some_and(|slip| {
             let before = line.get(..slip.at.end).unwrap_or_default();
             before.trim().is_empty()
@@ -98,13 +97,6 @@ pub(super) fn behind_error(
     None
 }
 
-/// Returns the number of brackets that a text leaves open.
-fn opened(text: &str) -> usize {
-    let mut scanner = Scanner::new(text, false);
-    while scanner.step().is_some() {}
-    scanner.open.len()
-}
-
 fn replace(text: &str, offset: usize, slips: &[Slip]) -> String {
     let mut fixed = text.to_owned();
     for slip in slips.iter().rev() {
@@ -121,7 +113,9 @@ fn fault(file: FileId, line: &str, offset: usize, slips: &[Slip]) -> Option<Diag
     let (first, last) = (slips.first()?, slips.last()?);
     let place = |at: &Range<usize>| Span::new(file, offset + at.start, offset + at.end);
     let whole = first.at.start..last.at.end;
-    let replacement = replace(line.get(whole.clone())?, 0, &shifted(slips, first.at.start));
+    let fixed = replace(line, 0, slips);
+    let behind = line.len() - whole.end;
+    let replacement = fixed.get(whole.start..fixed.len() - behind)?.to_owned();
     let whole = place(&whole);
     let character = line.get(first.at.clone())?.chars().next();
     let fault = if let Some(character) = character {
@@ -177,14 +171,6 @@ fn fault(file: FileId, line: &str, offset: usize, slips: &[Slip]) -> Option<Diag
     })
 }
 
-fn shifted(slips: &[Slip], by: usize) -> Vec<Slip> {
-    let shifted = slips.iter().map(|slip| Slip {
-        at: slip.at.start - by..slip.at.end - by,
-        replacement: slip.replacement,
-    });
-    shifted.collect()
-}
-
 /// A scan of a line or a scalar.
 struct Scanner<'a> {
     text: &'a str,
@@ -201,8 +187,9 @@ struct Scanner<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    fn new(text: &'a str, in_brackets: bool) -> Self {
-        Self {
+    /// Scans a whole text.
+    fn of(text: &'a str, in_brackets: bool) -> Self {
+        let mut scanner = Self {
             text,
             at: 0,
             token: None,
@@ -210,12 +197,9 @@ impl<'a> Scanner<'a> {
             open: if in_brackets { vec![false] } else { Vec::new() },
             found: Vec::new(),
             cut: None,
-        }
-    }
-
-    fn slips(mut self) -> Vec<Slip> {
-        while self.step().is_some() {}
-        self.found
+        };
+        while scanner.step().is_some() {}
+        scanner
     }
 
     /// Scans the next character.
@@ -308,9 +292,7 @@ impl<'a> Scanner<'a> {
     }
 
     fn insert_space(&mut self) {
-        let at = self.at..self.at;
-        let replacement = " ";
-        self.found.push(Slip { at, replacement });
+        self.slip(self.at, " ");
     }
 
     fn is_separated(&self, start: usize) -> bool {
