@@ -32,38 +32,17 @@ pub(crate) fn message<'m>(
         reader.skip_value()?;
         reader.end()
     })?;
-    let reading = |keys| {
+    let reading = |fields, others| {
         json::read_object(bytes, Allowance::ANY, |reader| {
             let reader = reader.clone();
-            Reading { plan, reader }.object(keys)
+            Reading { plan, reader }.object(fields, others)
         })
     };
     // The envelope stays readable if the body has an error.
     Ok(Message {
-        envelope: reading(Keys {
-            fields: envelope,
-            others: Others::Skipped,
-        })?,
-        body: reading(Keys {
-            fields: own,
-            others: Others::KeptBut(envelope),
-        }),
+        envelope: reading(envelope, None)?,
+        body: reading(own, Some(envelope)),
     })
-}
-
-/// The keys to read from an object.
-#[derive(Clone, Copy)]
-struct Keys<'p, 'm> {
-    fields: &'p [FieldPlan<'m>],
-    others: Others<'p, 'm>,
-}
-
-/// The treatment of other keys.
-#[derive(Clone, Copy)]
-enum Others<'p, 'm> {
-    Skipped,
-    /// Other keys are kept, except those of these fields.
-    KeptBut(&'p [FieldPlan<'m>]),
 }
 
 /// A value, and the quirk that accepted it.
@@ -76,17 +55,21 @@ struct Reading<'p, 'm, 't> {
 }
 
 impl<'m> Reading<'_, 'm, '_> {
-    /// Reads an object with these keys.
-    fn object(&mut self, keys: Keys<'_, 'm>) -> Result<Vec<Node<'m>>, BodyError> {
+    /// Reads an object with these fields. Skips other keys, or keeps all except those of the fields in `others`.
+    fn object(
+        &mut self,
+        fields: &[FieldPlan<'m>],
+        others: Option<&[FieldPlan<'m>]>,
+    ) -> Result<Vec<Node<'m>>, BodyError> {
         self.reader.peek();
         let start = self.reader.clone();
         self.reader.begin_object()?;
         let mut nodes: Vec<Node<'m>> = Vec::new();
         // For each field, `true` if its key was read.
-        let mut seen = vec![false; keys.fields.len()];
+        let mut seen = vec![false; fields.len()];
         while !self.reader.end_object() {
             let key = self.reader.key()?;
-            let found = keys.fields.iter().zip(&mut seen).enumerate();
+            let found = fields.iter().zip(&mut seen).enumerate();
             let mut found = found.filter(|(_, (field, _))| field.is_named(&key));
             if let Some((slot, (field, seen))) = found.next() {
                 self.reader.peek();
@@ -95,7 +78,7 @@ impl<'m> Reading<'_, 'm, '_> {
                     return Err(self.reader.fault(BodyErrorKind::DuplicateKey, detail));
                 }
                 nodes.push(self.field(field, slot, key)?);
-            } else if let Others::KeptBut(skipped) = keys.others
+            } else if let Some(skipped) = others
                 && !skipped.iter().any(|field| field.is_named(&key))
             {
                 nodes.push(self.unknown(key)?);
@@ -104,14 +87,14 @@ impl<'m> Reading<'_, 'm, '_> {
             }
             self.reader.end_value()?;
         }
-        for (field, seen) in keys.fields.iter().zip(seen) {
+        for (field, seen) in fields.iter().zip(seen) {
             if !seen && !field.optional {
                 let detail = "the key is required; send it";
                 let fault = start.fault(BodyErrorKind::MissingField, detail);
                 return Err(fault.in_key(field.wire));
             }
         }
-        constraint::check(keys.fields, &nodes, &start)?;
+        constraint::check(fields, &nodes, &start)?;
         Ok(nodes)
     }
 
@@ -184,20 +167,13 @@ impl<'m> Reading<'_, 'm, '_> {
             Read::Json => Value::Json(self.reader.value_text()?.to_owned()),
             Read::List(item) => Value::List(self.list(item)?),
             Read::Shape(number) => match self.plan.shape(*number) {
-                Some(Shape::Struct(fields)) => Value::Object(self.own_object(fields)?),
+                Some(Shape::Struct(fields)) => Value::Object(self.object(fields, Some(&[]))?),
                 Some(Shape::Enum(shape)) => self.choice_of_values(shape)?,
                 Some(Shape::Choice(variants)) => self.choice_of_objects(variants)?,
                 None => Value::Json(self.reader.value_text()?.to_owned()),
             },
         };
         Ok((value, None))
-    }
-
-    fn own_object(&mut self, fields: &[FieldPlan<'m>]) -> Result<Vec<Node<'m>>, BodyError> {
-        self.object(Keys {
-            fields,
-            others: Others::KeptBut(&[]),
-        })
     }
 
     fn list(&mut self, item: &TypePlan<'m>) -> Result<Vec<Node<'m>>, BodyError> {
@@ -278,7 +254,7 @@ impl<'m> Reading<'_, 'm, '_> {
         };
         Ok(Value::OneOf {
             variant,
-            keys: self.own_object(self.plan.fields(*number))?,
+            keys: self.object(self.plan.fields(*number), Some(&[]))?,
         })
     }
 
