@@ -5,9 +5,9 @@
 mod operation;
 
 use super::{
-    Answer, Asked, Condition, Constraints, EnumType, Example, Field, FieldDetails, Model, OneOf,
-    Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef, TypeRef,
-    TypeShape, Types, Unlinked, Value, Variant,
+    Answer, Asked, Available, Condition, Constraints, EnumType, Example, Field, FieldDetails,
+    Model, OneOf, Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type,
+    TypeDef, TypeRef, TypeShape, Types, Unlinked, Value, Variant,
 };
 use crate::text;
 use std::collections::HashSet;
@@ -78,16 +78,13 @@ impl Model {
             model: self,
         };
         let mut model = self.clone();
-        let has = |operation: &Operation| {
-            let available = operation.available.as_ref();
-            available.is_none_or(|it| it.is_for(audience))
-        };
+        let has = |operation: &Operation| view.has(operation.available.as_ref());
         model.operations.retain(has);
         let names: HashSet<String> = (model.operations.iter().map(|it| it.name.clone())).collect();
         for operation in &mut model.operations {
             view.operation(operation, &names);
         }
-        let others = self.operations.iter().filter(|operation| !has(operation));
+        let others = self.operations.iter().filter(|it| !has(it));
         let taken = others.filter_map(|operation| {
             Some(RetiredCode {
                 code: operation.code.value?,
@@ -154,6 +151,11 @@ struct View<'m> {
 }
 
 impl View<'_> {
+    /// Returns `true` if the audience has a thing that is available like this.
+    fn has(&self, available: Option<&Available>) -> bool {
+        available.is_none_or(|it| it.is_for(self.audience))
+    }
+
     /// Returns the remaining types without their parts for other audiences.
     fn types(&self, model: &Model) -> Types {
         let types: Vec<TypeDef> = self
@@ -186,12 +188,7 @@ impl View<'_> {
     fn type_def(&self, ty: &TypeDef) -> TypeDef {
         let shape = match &ty.shape {
             TypeShape::Struct(shape) => TypeShape::Struct(StructType {
-                fields: (shape
-                    .fields
-                    .iter()
-                    .filter(|field| self.has_field(shape, field)))
-                .map(|field| self.field(shape, field))
-                .collect(),
+                fields: self.fields(shape).collect(),
                 ..shape.clone()
             }),
             TypeShape::Enum(shape) => TypeShape::Enum(self.enumeration(shape)),
@@ -205,10 +202,15 @@ impl View<'_> {
         }
     }
 
+    fn fields(&self, shape: &StructType) -> impl Iterator<Item = Field> {
+        let fields = shape.fields.iter();
+        let fields = fields.filter(|field| self.has_field(shape, field));
+        fields.map(|field| self.field(shape, field))
+    }
+
     fn has_field(&self, shape: &StructType, field: &Field) -> bool {
-        let available = field.details().available.as_ref();
         let is_there = !matches!(self.condition(shape, field), Left::Never if field.optional);
-        is_there && available.is_none_or(|it| it.is_for(self.audience))
+        is_there && self.has(field.details().available.as_ref())
     }
 
     /// Returns the condition of a field without the values for other audiences.
@@ -272,10 +274,7 @@ impl View<'_> {
     fn enumeration(&self, shape: &EnumType) -> EnumType {
         let values = shape.values.iter();
         let mut values: Vec<_> = values
-            .filter(|value| {
-                let available = value.available.as_ref();
-                available.is_none_or(|it| it.is_for(self.audience))
-            })
+            .filter(|value| self.has(value.available.as_ref()))
             .cloned()
             .collect();
         let names: HashSet<String> = values.iter().map(|value| value.name.clone()).collect();
@@ -292,10 +291,7 @@ impl View<'_> {
 
     fn variants<'c>(&self, choice: &'c OneOf) -> impl Iterator<Item = &'c Variant> {
         let variants = choice.variants.iter();
-        variants.filter(|variant| {
-            let available = variant.available.as_ref();
-            available.is_none_or(|it| it.is_for(self.audience))
-        })
+        variants.filter(|variant| self.has(variant.available.as_ref()))
     }
 
     /// Returns a value without the keys for other audiences. `None` if a required part of it is for other audiences.
@@ -316,9 +312,7 @@ impl View<'_> {
                 let mut values = shape.values.iter();
                 let known = values.find(|known| Value::from(&known.wire) == *value);
                 let available = known.and_then(|known| known.available.as_ref());
-                available
-                    .is_none_or(|it| it.is_for(self.audience))
-                    .then(|| value.clone())
+                self.has(available).then(|| value.clone())
             }
             TypeShape::Struct(shape) => self.object(value, shape),
             TypeShape::OneOf(choice) => {
