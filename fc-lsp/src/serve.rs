@@ -16,6 +16,7 @@ use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestI
 use serde::Deserialize as _;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -113,18 +114,11 @@ struct Server<'h> {
     is_shut_down: bool,
 }
 
-/// The way the loop continues.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Next {
-    GoOn,
-    Exit,
-}
-
 impl Server<'_> {
     fn run(&mut self, events: &Receiver<Event>) -> bool {
         while let Ok(first) = events.recv() {
             let batch = std::iter::once(first).chain(events.try_iter());
-            if self.handle(batch.take(WAITING).collect()) == Next::Exit {
+            if self.handle(batch.take(WAITING).collect()).is_break() {
                 return self.is_shut_down;
             }
             self.check();
@@ -132,7 +126,8 @@ impl Server<'_> {
         false
     }
 
-    fn handle(&mut self, batch: Vec<Event>) -> Next {
+    /// Handles events. Breaks if the loop must end.
+    fn handle(&mut self, batch: Vec<Event>) -> ControlFlow<()> {
         let cancelled: Vec<RequestId> = batch.iter().filter_map(cancelled).collect();
         for id in &cancelled {
             if self.worker.cancel(id) {
@@ -146,18 +141,16 @@ impl Server<'_> {
                 }
                 Event::Message(Message::Request(request)) => self.request(request),
                 Event::Message(Message::Notification(notification)) => {
-                    if self.notification(&notification) == Next::Exit {
-                        return Next::Exit;
-                    }
+                    self.notification(&notification)?;
                 }
                 Event::Message(Message::Response(_)) => {}
                 Event::Checked(snapshot) => self.checked(&snapshot),
                 Event::Compared(snapshot) => self.compared(&snapshot),
                 Event::Answered(response) => self.send(response),
-                Event::End => return Next::Exit,
+                Event::End => return ControlFlow::Break(()),
             }
         }
-        Next::GoOn
+        ControlFlow::Continue(())
     }
 
     /// Sends changes to the worker.
@@ -185,16 +178,13 @@ impl Server<'_> {
             self.send(Response::new_ok(request.id, ()));
         } else {
             let snapshot = self.workspace.as_mut().map(Workspace::snapshot);
-            match snapshot.filter(|snapshot| waits(&request.method, snapshot)) {
-                Some(snapshot) => self.later(request, snapshot),
-                None => self.now(request),
+            match snapshot {
+                Some(snapshot) if waits(&request.method, &snapshot) => {
+                    self.later(request, snapshot);
+                }
+                snapshot => self.send(answer(request, snapshot.as_deref())),
             }
         }
-    }
-
-    fn now(&mut self, request: Request) {
-        let snapshot = self.workspace.as_mut().map(Workspace::snapshot);
-        self.send(answer(request, snapshot.as_deref()));
     }
 
     /// Queues a request for the worker, behind the check of its snapshot.
@@ -207,7 +197,7 @@ impl Server<'_> {
     }
 
     /// Handles a notification. Ignores one with an unknown method.
-    fn notification(&mut self, notification: &Notification) -> Next {
+    fn notification(&mut self, notification: &Notification) -> ControlFlow<()> {
         if let Some(params) = read::<lsp::DidOpenTextDocumentNotification>(notification) {
             self.open(params.text_document);
         } else if let Some(params) = read::<lsp::DidChangeTextDocumentNotification>(notification) {
@@ -224,9 +214,9 @@ impl Server<'_> {
         } else if notification.method == lsp::InitializedNotification::METHOD.as_str() {
             self.begin();
         } else if notification.method == lsp::ExitNotification::METHOD.as_str() {
-            return Next::Exit;
+            return ControlFlow::Break(());
         }
-        Next::GoOn
+        ControlFlow::Continue(())
     }
 
     /// Looks for the project in the client's directories. Logs the reason if there is none.
