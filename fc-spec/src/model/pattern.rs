@@ -5,8 +5,8 @@ use crate::text;
 use regex_lite::Regex;
 use regex_syntax::ast::parse::Parser;
 use regex_syntax::ast::{
-    AssertionKind, Ast, ClassAscii, ClassAsciiKind, ClassBracketed, ClassPerl, ClassPerlKind,
-    ClassSet, ClassSetItem, GroupKind, RepetitionKind, RepetitionRange,
+    AssertionKind, Ast, ClassAsciiKind, ClassBracketed, ClassPerl, ClassPerlKind, ClassSet,
+    ClassSetItem, GroupKind, RepetitionKind, RepetitionRange,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -158,7 +158,7 @@ impl Edges {
     };
 }
 
-fn refused(construct: Text) -> Result<usize, PatternError> {
+fn refused<T>(construct: Text) -> Result<T, PatternError> {
     Err(PatternError::NotPortable(construct))
 }
 
@@ -188,14 +188,8 @@ fn write(ast: &Ast, edges: Edges, out: &mut String) -> Result<usize, PatternErro
             "Unicode 类（如 `\\p{{L}}`）",
             "Unicode classes such as `\\p{{L}}`"
         )),
-        Ast::ClassPerl(class) => {
-            perl(class).write(out)?;
-            Ok(1)
-        }
-        Ast::ClassBracketed(class) => {
-            bracketed(class)?.write(out)?;
-            Ok(1)
-        }
+        Ast::ClassPerl(class) => perl(class).write(out),
+        Ast::ClassBracketed(class) => bracketed(class)?.write(out),
         Ast::Repetition(repetition) => {
             out.push_str("(?:");
             let inside = out.len();
@@ -314,10 +308,6 @@ impl Class {
         Self(merged)
     }
 
-    fn of_ascii(ranges: &[(u8, u8)]) -> Self {
-        Self::of(ranges.iter().map(|&(a, b)| (a.into(), b.into())).collect())
-    }
-
     fn negated_if(self, is_negated: bool) -> Self {
         if !is_negated {
             return self;
@@ -336,15 +326,16 @@ impl Class {
         Self(rest)
     }
 
-    fn write(self, out: &mut String) -> Result<(), PatternError> {
+    /// Writes the class, which is one part of a pattern.
+    fn write(self, out: &mut String) -> Result<usize, PatternError> {
         let is_open = self.0.last().is_some_and(|(_, last)| *last == LAST);
         let class = self.negated_if(is_open);
         if class.0.is_empty() {
             if !is_open {
-                return refused(text!("空的字符类", "empty classes")).map(drop);
+                return refused(text!("空的字符类", "empty classes"));
             }
             out.push_str(r"(?:[^\n]|\n)");
-            return Ok(());
+            return Ok(1);
         }
         out.push_str(if is_open { "[^" } else { "[" });
         for (first, last) in class.0 {
@@ -357,7 +348,7 @@ impl Class {
             }
         }
         out.push(']');
-        Ok(())
+        Ok(1)
     }
 }
 
@@ -374,16 +365,16 @@ fn write_in_class(character: u32, out: &mut String) {
 }
 
 fn perl(class: &ClassPerl) -> Class {
-    let ranges: &[(u8, u8)] = match class.kind {
-        ClassPerlKind::Digit => &[(b'0', b'9')],
-        ClassPerlKind::Space => &[(b'\t', b'\r'), (b' ', b' ')],
-        ClassPerlKind::Word => &[(b'0', b'9'), (b'A', b'Z'), (b'_', b'_'), (b'a', b'z')],
+    let kind = match class.kind {
+        ClassPerlKind::Digit => &ClassAsciiKind::Digit,
+        ClassPerlKind::Space => &ClassAsciiKind::Space,
+        ClassPerlKind::Word => &ClassAsciiKind::Word,
     };
-    Class::of_ascii(ranges).negated_if(class.negated)
+    ascii(kind).negated_if(class.negated)
 }
 
-fn ascii(class: &ClassAscii) -> Class {
-    let ranges: &[(u8, u8)] = match class.kind {
+fn ascii(kind: &ClassAsciiKind) -> Class {
+    let ranges: &[(u8, u8)] = match kind {
         ClassAsciiKind::Alnum => &[(b'0', b'9'), (b'A', b'Z'), (b'a', b'z')],
         ClassAsciiKind::Alpha => &[(b'A', b'Z'), (b'a', b'z')],
         ClassAsciiKind::Ascii => &[(0, 0x7F)],
@@ -399,13 +390,12 @@ fn ascii(class: &ClassAscii) -> Class {
         ClassAsciiKind::Word => &[(b'0', b'9'), (b'A', b'Z'), (b'_', b'_'), (b'a', b'z')],
         ClassAsciiKind::Xdigit => &[(b'0', b'9'), (b'A', b'F'), (b'a', b'f')],
     };
-    Class::of_ascii(ranges).negated_if(class.negated)
+    Class::of(ranges.iter().map(|&(a, b)| (a.into(), b.into())).collect())
 }
 
 fn bracketed(class: &ClassBracketed) -> Result<Class, PatternError> {
     let ClassSet::Item(item) = &class.kind else {
-        return refused(text!("字符类的集合运算", "operations on classes"))
-            .map(|_| Class(Vec::new()));
+        return refused(text!("字符类的集合运算", "operations on classes"));
     };
     Ok(Class::of(ranges(item)?).negated_if(class.negated))
 }
@@ -415,19 +405,16 @@ fn ranges(item: &ClassSetItem) -> Result<Vec<(u32, u32)>, PatternError> {
         ClassSetItem::Empty(_) => return Ok(Vec::new()),
         ClassSetItem::Literal(literal) => return Ok(vec![(literal.c.into(), literal.c.into())]),
         ClassSetItem::Range(range) => return Ok(vec![(range.start.c.into(), range.end.c.into())]),
-        ClassSetItem::Ascii(class) => ascii(class),
+        ClassSetItem::Ascii(class) => ascii(&class.kind).negated_if(class.negated),
         ClassSetItem::Perl(class) => perl(class),
         ClassSetItem::Unicode(_) => {
-            return Err(PatternError::NotPortable(text!(
+            return refused(text!(
                 "Unicode 类（如 `\\p{{L}}`）",
                 "Unicode classes such as `\\p{{L}}`"
-            )));
+            ));
         }
         ClassSetItem::Bracketed(_) => {
-            return Err(PatternError::NotPortable(text!(
-                "嵌套的字符类",
-                "nested classes"
-            )));
+            return refused(text!("嵌套的字符类", "nested classes"));
         }
         ClassSetItem::Union(union) => {
             let mut all = Vec::new();
