@@ -2,11 +2,11 @@
 
 use crate::finding::{Finding, Senders, Spot};
 use crate::judge::judged;
-use crate::matching::{self, Pair};
+use crate::matching::{self, Pair, TypePair};
 use crate::rule::{Rule, Wire};
 use crate::rules::fields as rules;
 use crate::rules::operations::{CODE_REUSED, OPERATION_RENAMED};
-use fc_spec::model::{Model, Operation, TypeDef, TypeShape};
+use fc_spec::model::{Model, Operation, TypeShape};
 
 /// Rules about the meaning of a field.
 static MEANINGS: [&Rule; 10] = [
@@ -53,21 +53,14 @@ pub(crate) fn reused<'m>(
 struct Between<'m> {
     old: &'m Model,
     new: &'m Model,
-    /// Name of the new type, the old type and the new type.
-    types: Vec<(&'m str, &'m TypeDef, &'m TypeDef)>,
+    types: Vec<TypePair<'m>>,
 }
 
 impl<'m> Between<'m> {
     fn of(old: &'m Model, new: &'m Model) -> Self {
         let operations = matching::operations(old, new);
-        let pairs = matching::types(old, new, &operations).both.into_iter();
-        Self {
-            old,
-            new,
-            types: pairs
-                .map(|it| (it.new.name.as_str(), it.old, it.new))
-                .collect(),
-        }
+        let types = matching::types(old, new, &operations).both;
+        Self { old, new, types }
     }
 
     /// Turns a difference from an earlier release into a finding, if `old` lacks the field or value.
@@ -121,17 +114,16 @@ impl<'m> Between<'m> {
         let Some((owner, key)) = spot.name.rsplit_once('.') else {
             return true;
         };
-        let envelope = |name: &str, keys: &[fc_spec::model::EnvelopeField]| {
-            owner == name && keys.iter().any(|it| it.wire == key)
+        let keys = match owner {
+            "envelope.request" => self.old.envelope.request.as_slice(),
+            "envelope.response" => &self.old.envelope.response,
+            _ => &[],
         };
-        let sides = &self.old.envelope;
-        if envelope("envelope.request", &sides.request)
-            || envelope("envelope.response", &sides.response)
-        {
+        if keys.iter().any(|it| it.wire == key) {
             return true;
         }
-        let mut types = self.types.iter().filter(|(name, ..)| *name == owner);
-        types.any(|(_, old, new)| match (&old.shape, &new.shape) {
+        let mut types = self.types.iter().filter(|it| it.new.name == owner);
+        types.any(|it| match (&it.old.shape, &it.new.shape) {
             (TypeShape::Struct(old), TypeShape::Struct(new)) => {
                 let pairs = matching::fields(&old.fields, &new.fields);
                 let mut pairs = pairs.iter().filter_map(Pair::both);
@@ -160,9 +152,8 @@ impl<'m> Between<'m> {
     fn results(&self, release: &str, earlier: &Model) -> Vec<Finding> {
         let name = |model: &'m Model, code: i64| {
             let mut results = model.results.iter();
-            results
-                .find(|it| it.code == code)
-                .map(|it| it.name.as_str())
+            let result = results.find(|it| it.code == code);
+            result.map(|it| it.name.as_str())
         };
         let mut found = Vec::new();
         for was in &earlier.results {
