@@ -3,8 +3,6 @@
 use super::search::Search;
 use crate::diagnostic::LintCode;
 use crate::model::Lang;
-use std::cmp::Ordering;
-use std::hash::{Hash, Hasher};
 
 /// The category of a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -173,21 +171,3 @@ impl PartialEq for Rule {
 }
 
 impl Eq for Rule {}
-
-impl PartialOrd for Rule {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Rule {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.code.number.cmp(other.code.number)
-    }
-}
-
-impl Hash for Rule {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.code.number.hash(state);
-    }
-}

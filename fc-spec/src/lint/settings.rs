@@ -112,7 +112,8 @@ fn read(
             "改正 `house` 中的文件名",
             "correct the file name under `house`"
         );
-        reader.fault(Span::point(id, 0), message, advice);
+        let fault = error(Span::point(id, 0), message).note(advice);
+        reader.faults.push(fault);
         return Vec::new();
     }
     let Some(tree) = parse(id, &source.text, reader.faults) else {
@@ -151,29 +152,26 @@ pub(super) struct Reader<'f> {
 }
 
 impl Reader<'_> {
-    pub(super) fn fault(&mut self, span: Span, message: Text, advice: Text) {
-        let code = FaultCode::Lint(&SETTINGS.code);
-        self.faults
-            .push(Diagnostic::error(code, span, message).note(advice));
+    /// Adds an error. Returns `None` for the setting.
+    pub(super) fn fault<T>(&mut self, span: Span, message: Text, advice: Text) -> Option<T> {
+        self.faults.push(error(span, message).note(advice));
+        None
     }
 
-    /// Adds an error for a word that is not in `words`.
-    pub(super) fn unknown<'w>(
+    /// Adds an error for a word that is not in `words`. Returns `None` for the setting.
+    pub(super) fn unknown<'w, T>(
         &mut self,
         node: Node<'_>,
         what: &Text,
         words: impl Iterator<Item = &'w str> + Clone,
-    ) {
+    ) -> Option<T> {
         let word = node.as_str().unwrap_or_default();
-        let fault = Diagnostic::error(
-            FaultCode::Lint(&SETTINGS.code),
-            node.span(),
-            text!(
-                "没有{what} `{word}`",
-                "there is no {what} `{word}`",
-                what = what
-            ),
+        let message = text!(
+            "没有{what} `{word}`",
+            "there is no {what} `{word}`",
+            what = what
         );
+        let fault = error(node.span(), message);
         self.faults
             .push(if let Some(near) = nearest(word, words.clone()) {
                 fault.fix(node.span(), near, meant(near))
@@ -182,6 +180,7 @@ impl Reader<'_> {
                 let (zh, en) = (words.join("、"), words.join(", "));
                 fault.note(text!("可以写：{zh}", "expected one of {en}"))
             });
+        None
     }
 
     fn levels(&mut self, lint: Node<'_>) {
@@ -214,7 +213,7 @@ impl Reader<'_> {
                 "没有规则或类别 `{name}`",
                 "there is no rule and no category `{name}`"
             );
-            let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), *span, message);
+            let fault = error(*span, message);
             self.faults.push(match nearest(name, known) {
                 Some(near) => fault.fix(*span, near, meant(near)),
                 None => fault.note(text!(
@@ -239,15 +238,19 @@ impl Reader<'_> {
                         "two rules have the id `{id}`",
                         id = rule.id
                     );
-                    let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), span, message);
-                    self.faults
-                        .push(fault.also(first, text!("第一次用在这里", "first used here")));
+                    let label = text!("第一次用在这里", "first used here");
+                    self.faults.push(error(span, message).also(first, label));
                 }
                 self.settings.house.push(rule);
             }
         }
         files
     }
+}
+
+/// Returns an error in the settings.
+pub(super) fn error(span: Span, message: Text) -> Diagnostic {
+    Diagnostic::error(FaultCode::Lint(&SETTINGS.code), span, message)
 }
 
 pub(super) fn meant(near: &str) -> Text {

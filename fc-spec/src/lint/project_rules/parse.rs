@@ -1,13 +1,13 @@
 //! Reads a rule of the project: its subject and its tests.
 
-use super::{GROUPS, HOUSE_RULE as RULE, HouseRule, SETTINGS};
-use crate::diagnostic::{Diagnostic, FaultCode, nearest};
+use super::{GROUPS, HOUSE_RULE as RULE, HouseRule};
+use crate::diagnostic::nearest;
 use crate::language::grammar::{Form as _, HOUSE_RULE, TestedKind, both_languages};
 use crate::language::scalar;
 use crate::lint::path::{At, Shape};
 use crate::lint::predicate::{Check, Test};
 use crate::lint::rule::Level;
-use crate::lint::settings::{Reader, meant};
+use crate::lint::settings::{Reader, error, meant};
 use crate::syntax::{Node, NodeKind, Style};
 use crate::text;
 use regex_lite::Regex;
@@ -47,24 +47,16 @@ impl Reader<'_> {
     fn test(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Test> {
         let Some(depth) = depth.checked_sub(1) else {
             let message = text!("判断嵌套太深", "the test is nested too deeply");
-            self.fault(
-                node.span(),
-                message,
-                text!("分成两条规则", "split the rule in two"),
-            );
-            return None;
+            let advice = text!("分成两条规则", "split the rule in two");
+            return self.fault(node.span(), message, advice);
         };
         if node.as_mapping().is_none() {
             let advice = text!(
                 "写出路径和应有的值，例如 `{{ effect: motion }}`",
                 "write a path and its test: `{{ effect: motion }}`"
             );
-            self.fault(
-                node.span(),
-                text!("判断应为映射", "a test must be a mapping"),
-                advice,
-            );
-            return None;
+            let message = text!("判断应为映射", "a test must be a mapping");
+            return self.fault(node.span(), message, advice);
         }
         let mut tests = Vec::new();
         let mut is_sound = true;
@@ -87,12 +79,8 @@ impl Reader<'_> {
     fn each(&mut self, node: Node<'_>, shape: &Shape, depth: u8) -> Option<Vec<Test>> {
         if node.as_sequence().is_none() {
             let advice = text!("在每项判断前写短横线", "write a dash before each test");
-            self.fault(
-                node.span(),
-                text!("`all` 和 `any` 应为列表", "`all` and `any` must be lists"),
-                advice,
-            );
-            return None;
+            let message = text!("`all` 和 `any` 应为列表", "`all` and `any` must be lists");
+            return self.fault(node.span(), message, advice);
         }
         let tests = node.items().map(|item| self.test(item, shape, depth));
         tests.collect()
@@ -114,21 +102,17 @@ impl Reader<'_> {
                     "改用 `present`、`absent`、`min_length` 或 `max_length`",
                     "use `present`, `absent`, `min_length` or `max_length`"
                 );
-                self.fault(
-                    key.span(),
-                    text!(
-                        "`{list}` 是列表，不能与值比较",
-                        "`{list}` is a list and cannot be compared with a value"
-                    ),
-                    advice,
+                let message = text!(
+                    "`{list}` 是列表，不能与值比较",
+                    "`{list}` is a list and cannot be compared with a value"
                 );
-                return None;
+                return self.fault(key.span(), message, advice);
             }
             let message = text!(
                 "`fcproto inspect` 的输出中没有键 `{part}`",
                 "the output of `fcproto inspect` has no key `{part}` here"
             );
-            let fault = Diagnostic::error(FaultCode::Lint(&SETTINGS.code), key.span(), message);
+            let fault = error(key.span(), message);
             let near = nearest(part, keys.keys().copied());
             self.faults.push(if let Some(near) = near {
                 let mut path = path.clone();
@@ -185,8 +169,8 @@ impl Reader<'_> {
                         "min_length" => Check::MinLength(self.length(value)?),
                         "max_length" => Check::MaxLength(self.length(value)?),
                         _ => {
-                            self.unknown(entry.key, &text!("判断方式", "test"), CHECKS.into_iter());
-                            return None;
+                            let what = text!("判断方式", "test");
+                            return self.unknown(entry.key, &what, CHECKS.into_iter());
                         }
                     });
                 }
@@ -197,8 +181,7 @@ impl Reader<'_> {
                     "写 `present`、`absent`、一个值，或 `{{ one_of: [ … ] }}` 等",
                     "write `present`, `absent`, a value, or a test such as `{{ one_of: [ … ] }}`"
                 );
-                self.fault(node.span(), text!("缺少判断", "the test is empty"), advice);
-                None
+                self.fault(node.span(), text!("缺少判断", "the test is empty"), advice)
             }
         }
     }
@@ -210,17 +193,12 @@ impl Reader<'_> {
                 "写文本、数值或布尔值",
                 "write a text, a number or a boolean"
             );
-            self.fault(
-                node.span(),
-                text!("应为单个值", "expected a single value"),
-                advice,
-            );
-            return None;
+            let message = text!("应为单个值", "expected a single value");
+            return self.fault(node.span(), message, advice);
         };
         let words = at.words();
         if !words.is_empty() && !words.contains(&scalar.text) {
-            self.unknown(node, &text!("值", "value"), words.into_iter());
-            return None;
+            return self.unknown(node, &text!("值", "value"), words.into_iter());
         }
         Some(match scalar.style {
             Style::Plain => match (scalar::bool(node), scalar::number(node)) {
@@ -244,30 +222,27 @@ impl Reader<'_> {
                     "this is not a regular expression: {error}"
                 );
                 let advice = text!("它要与整个文本匹配", "it is matched against the whole text");
-                self.fault(node.span(), message, advice);
-                None
+                self.fault(node.span(), message, advice)
             }
         }
     }
 
     fn number(&mut self, node: Node<'_>) -> Option<f64> {
         let number = scalar::number(node).map(|number| number.to_f64());
-        if number.is_none() {
+        number.or_else(|| {
             let advice = text!(
                 "例如 `3`、`0.5` 或 `0x0A00`",
                 "such as `3`, `0.5` or `0x0A00`"
             );
-            self.fault(node.span(), text!("应为数值", "expected a number"), advice);
-        }
-        number
+            self.fault(node.span(), text!("应为数值", "expected a number"), advice)
+        })
     }
 
     fn length(&mut self, node: Node<'_>) -> Option<usize> {
         let length = scalar::int(node).and_then(|length| usize::try_from(length).ok());
-        if length.is_none() {
+        length.or_else(|| {
             let message = text!("应为长度", "expected a length");
-            self.fault(node.span(), message, text!("例如 `3`", "such as `3`"));
-        }
-        length
+            self.fault(node.span(), message, text!("例如 `3`", "such as `3`"))
+        })
     }
 }
