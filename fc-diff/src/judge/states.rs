@@ -7,10 +7,10 @@ use crate::matching::Pair;
 use crate::rule::Language;
 use crate::rules::choices::STATES;
 use crate::rules::operations::ACCEPTED;
-use fc_spec::model::{EnumType, EnumValue, Operation, Scalar, StateOrder, StateSet};
+use fc_spec::model::{Accepted, EnumType, EnumValue, Operation, Scalar, StateOrder};
 use std::collections::BTreeMap;
 
-impl Judge<'_> {
+impl<'m> Judge<'m> {
     /// Judges `order`, `then`, `final` and `error` of an enum.
     pub(super) fn states(
         &mut self,
@@ -20,20 +20,15 @@ impl Judge<'_> {
     ) {
         let pairs: Vec<_> = pairs.iter().filter_map(Pair::both).collect();
         let names = pairs.iter();
-        let names: BTreeMap<&str, &str> = names
-            .map(|(one, other)| (&*one.name, &*other.name))
-            .collect();
+        let names: BTreeMap<&String, &String> =
+            names.map(|(one, other)| (&one.name, &other.name)).collect();
         let mut changed = Vec::new();
         for (one, other) in &pairs {
-            let kept = |then: &[String]| -> Vec<String> {
-                let kept = then.iter().filter_map(|name| names.get(name.as_str()));
-                kept.map(|name| (*name).to_owned()).collect()
-            };
             // Other findings report new and removed values.
-            let is_kept = |name: &&String| names.values().any(|it| *it == name.as_str());
-            let now: Vec<String> = other.then.iter().filter(is_kept).cloned().collect();
+            let kept = one.then.iter().filter_map(|name| names.get(name).copied());
+            let is_kept = |name: &&String| names.values().any(|it| it == name);
             let is_same = (one.is_final, one.is_error) == (other.is_final, other.is_error)
-                && kept(&one.then) == now;
+                && kept.eq(other.then.iter().filter(is_kept));
             if !is_same {
                 changed.push(other.name.as_str());
             }
@@ -64,30 +59,14 @@ impl Judge<'_> {
     }
 
     /// Judges the states in which a command is accepted.
-    pub(super) fn accepted(&mut self, old: &Operation, new: &Operation) {
-        let sets = |it: &Operation| {
-            let sets = it
-                .accepted()
-                .into_iter()
-                .flat_map(|it| it.state_sets().to_vec());
-            sets.collect::<Vec<StateSet>>()
+    pub(super) fn accepted(&mut self, old: &'m Operation, new: &'m Operation) {
+        let types = &self.types.both;
+        let new_name = |name: &'m str| {
+            let pair = types.iter().find(|pair| pair.old.name == name);
+            pair.map_or(name, |pair| &pair.new.name)
         };
-        let (before, after) = (sets(old), sets(new));
-        let other_name = |name: &str| -> String {
-            let mut pairs = self.types.both.iter();
-            let pair = pairs.find(|pair| pair.old.name == name);
-            pair.map_or(name, |pair| &pair.new.name).to_owned()
-        };
-        let before: BTreeMap<String, Vec<Scalar>> = before
-            .into_iter()
-            .map(|set| (other_name(set.ty.name()), set.values))
-            .collect();
-        let after: BTreeMap<String, Vec<Scalar>> = after
-            .into_iter()
-            .map(|set| (set.ty.name().to_owned(), set.values))
-            .collect();
-        let is_within = |inner: &BTreeMap<String, Vec<Scalar>>,
-                         outer: &BTreeMap<_, Vec<Scalar>>| {
+        let (before, after) = (states(old, new_name), states(new, |name| name));
+        let is_within = |inner: &States<'_>, outer: &States<'_>| {
             outer.iter().all(|(ty, allowed)| {
                 let values = inner.get(ty);
                 values.is_some_and(|values| values.iter().all(|value| allowed.contains(value)))
@@ -98,7 +77,7 @@ impl Judge<'_> {
             return;
         }
         let is_lost = before.keys().any(|ty| !after.contains_key(ty));
-        let shown = |sets: &BTreeMap<String, Vec<Scalar>>| {
+        let shown = |sets: &States<'_>| {
             let sets = sets.iter().map(|(ty, values)| {
                 let values: Vec<String> = values.iter().map(json).collect();
                 format!("{ty}: {}", values.join(", "))
@@ -114,6 +93,19 @@ impl Judge<'_> {
             _ => self.claim(&["operations", &new.name, "accepted"]),
         }
     }
+}
+
+/// The values of enums in which a command is accepted, by the names of the enums.
+type States<'m> = BTreeMap<&'m str, &'m [Scalar]>;
+
+/// Returns the states in which a command is accepted. `name` returns the name of an enum.
+fn states<'m>(command: &'m Operation, name: impl Fn(&'m str) -> &'m str) -> States<'m> {
+    let sets = command
+        .accepted()
+        .into_iter()
+        .flat_map(Accepted::state_sets);
+    sets.map(|set| (name(set.ty.name()), set.values.as_slice()))
+        .collect()
 }
 
 /// Returns the functions for states that the packages of an enum have, by language.
