@@ -247,42 +247,37 @@ impl Objection {
     /// Returns a sentence for the user, in both languages.
     #[must_use]
     pub fn message(&self) -> Text {
-        let [zh, en] = match self {
-            Self::NotLater { last } => [
-                format!("上一次发布是 {last}，请取更大的版本号"),
-                format!("the last release is {last}; choose a later number"),
-            ],
-            Self::GoesBack { version } => [
-                format!("规范的版本已是 {version}，请取这个版本号或更大的"),
-                format!("the version of the spec is {version}; choose that or a later number"),
-            ],
-            Self::Unchanged => [
-                "上一次发布以来没有变更".to_owned(),
-                "there are no changes since the last release".to_owned(),
-            ],
+        match self {
+            Self::NotLater { last } => text!(
+                "上一次发布是 {last}，请取更大的版本号",
+                "the last release is {last}; choose a later number"
+            ),
+            Self::GoesBack { version } => text!(
+                "规范的版本已是 {version}，请取这个版本号或更大的",
+                "the version of the spec is {version}; choose that or a later number"
+            ),
+            Self::Unchanged => text!(
+                "上一次发布以来没有变更",
+                "there are no changes since the last release"
+            ),
             Self::TooSmall { part, changes } => {
                 let number = part + 1;
                 let place = ["first", "second", "third", "fourth"];
                 let place = place.get(*part).unwrap_or(&"next");
-                [
-                    format!("有 {changes} 处变更要求更大的步长：版本号的第 {number} 段要增加"),
-                    format!(
-                        "{changes} of the changes ask for a larger step: the {place} part of the number has to rise"
-                    ),
-                ]
+                text!(
+                    "有 {changes} 处变更要求更大的步长：版本号的第 {number} 段要增加",
+                    "{changes} of the changes ask for a larger step: the {place} part of the number has to rise"
+                )
             }
             Self::NotWaived { ids } => {
                 let ids = ids.join(", ");
-                [
-                    format!("新旧 app 与机器人之间会出现误解：请撤销这些变更，或逐一豁免：{ids}"),
-                    format!(
-                        "old and new apps and robots would misunderstand each other: undo these changes, or waive each of them: {ids}"
-                    ),
-                ]
+                text!(
+                    "新旧 app 与机器人之间会出现误解：请撤销这些变更，或逐一豁免：{ids}",
+                    "old and new apps and robots would misunderstand each other: undo these changes, or waive each of them: {ids}"
+                )
             }
-            Self::Fault { message } => return message.clone(),
-        };
-        Text { zh, en }
+            Self::Fault { message } => message.clone(),
+        }
     }
 }
 

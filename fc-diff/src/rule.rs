@@ -134,6 +134,11 @@ pub(crate) const fn number(code: &str) -> u8 {
     }
 }
 
+/// Returns the code with a number: `FC0725` for 25.
+fn code(number: u8) -> String {
+    format!("FC07{number:02}")
+}
+
 /// Returns the English or the Chinese string.
 pub(crate) fn pick(lang: Lang, [en, zh]: [&str; 2]) -> &str {
     lang.pick(zh, en)
@@ -143,7 +148,7 @@ impl Rule {
     /// Returns the code, such as `FC0701`.
     #[must_use]
     pub fn code(&self) -> String {
-        format!("FC07{:02}", self.number)
+        code(self.number)
     }
 
     /// Returns the short title.
@@ -181,32 +186,18 @@ impl Rule {
         let mirror = if self.mirror.is_empty() {
             pick(lang, self.no_mirror).to_owned()
         } else {
-            let codes: Vec<_> = self
-                .mirror
-                .iter()
-                .map(|it| format!("FC07{it:02}"))
-                .collect();
+            let codes: Vec<_> = self.mirror.iter().copied().map(code).collect();
             codes.join(", ")
         };
-        let labels = match lang {
-            Lang::En => ["Wire", "Source", "Behaviour", "Silent", "Opposite change"],
-            Lang::Zh => ["报文", "源代码", "行为", "无报错", "反向变更"],
-        };
-        let values = [
-            pick(lang, wire).to_owned(),
-            source,
-            yes(self.behaviour).to_owned(),
-            yes(self.silent).to_owned(),
-            mirror,
+        let lines = [
+            (["Wire", "报文"], pick(lang, wire)),
+            (["Source", "源代码"], &source),
+            (["Behaviour", "行为"], yes(self.behaviour)),
+            (["Silent", "无报错"], yes(self.silent)),
+            (["Opposite change", "反向变更"], &mirror),
         ];
-        let lines: Vec<_> = labels
-            .iter()
-            .zip(values)
-            .map(|(label, value)| match lang {
-                Lang::En => format!("- {label}: {value}"),
-                Lang::Zh => format!("- {label}：{value}"),
-            })
-            .collect();
+        let colon = pick(lang, [": ", "："]);
+        let lines = lines.map(|(label, value)| format!("- {}{colon}{value}", pick(lang, label)));
         lines.join("\n")
     }
 }
