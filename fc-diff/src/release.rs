@@ -3,7 +3,7 @@
 use crate::finding::Finding;
 use crate::rule::About;
 use fc_spec::model::Text;
-use fc_spec::text;
+use fc_spec::{text, text_error};
 use std::cmp::Ordering;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -195,13 +195,7 @@ impl NoRelease {
     }
 }
 
-impl fmt::Display for NoRelease {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for NoRelease {}
+text_error!(NoRelease);
 
 /// Returns the file of a release, relative to the spec's directory: `releases/2026.12.json`.
 #[must_use]

@@ -7,8 +7,7 @@ use fc_spec::load::Trees;
 use fc_spec::model::{Dump, DumpError, Languages, Model, Text};
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
-use fc_spec::text;
-use std::fmt;
+use fc_spec::{text, text_error};
 use std::io::Read as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -106,13 +105,7 @@ impl VersionError {
     }
 }
 
-impl fmt::Display for VersionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for VersionError {}
+text_error!(VersionError);
 
 impl Version {
     /// Loads a version by name. The name is one of these:

@@ -10,8 +10,7 @@ use crate::load::Trees;
 use crate::model::{Kind, Languages, Model, Text};
 use crate::source::{Edits, SourceFile, Sources, Span};
 use crate::syntax::{Entry, Tree, parse, quoted};
-use crate::text;
-use std::fmt;
+use crate::{text, text_error};
 
 /// A spec without one of its operations.
 #[derive(Clone, Debug)]
@@ -69,13 +68,7 @@ impl RetireError {
     }
 }
 
-impl fmt::Display for RetireError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for RetireError {}
+text_error!(RetireError);
 
 /// Removes an operation and the comments above it. `why` becomes the text of its retired code.
 ///

@@ -8,8 +8,7 @@ use crate::load::{TO_BE_WRITTEN_EN, TO_BE_WRITTEN_ZH, is_operation_name};
 use crate::model::{Kind, Lang, Languages, Location, Model, Operation, RangeUse, Text};
 use crate::source::{Edits, FileId, SourceFile, Sources, Span};
 use crate::syntax::{Entry, Node, parse};
-use crate::text;
-use std::fmt;
+use crate::{text, text_error};
 
 /// The description of a new operation.
 #[derive(Clone, Copy, Debug)]
@@ -132,13 +131,7 @@ impl ScaffoldError {
     }
 }
 
-impl fmt::Display for ScaffoldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for ScaffoldError {}
+text_error!(ScaffoldError);
 
 /// Adds the YAML of a new operation after the last one of its kind in the file of its group.
 ///

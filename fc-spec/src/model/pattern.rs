@@ -1,7 +1,7 @@
 //! Regular expressions of `pattern`.
 
 use super::Text;
-use crate::text;
+use crate::{text, text_error};
 use regex_lite::Regex;
 use regex_syntax::ast::parse::Parser;
 use regex_syntax::ast::{
@@ -132,13 +132,7 @@ impl PatternError {
     }
 }
 
-impl fmt::Display for PatternError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for PatternError {}
+text_error!(PatternError);
 
 /// The edges of the whole text that a part touches.
 #[derive(Clone, Copy)]

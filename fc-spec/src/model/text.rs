@@ -126,6 +126,20 @@ macro_rules! text {
     };
 }
 
+/// Implements `Display` and `Error` for an error whose method `text` returns a [`Text`]. It shows the English sentence.
+#[macro_export]
+macro_rules! text_error {
+    ($Error:ty) => {
+        impl ::std::fmt::Display for $Error {
+            fn fmt(&self, f: &mut ::std::fmt::Formatter<'_>) -> ::std::fmt::Result {
+                f.write_str(&self.text().en)
+            }
+        }
+
+        impl ::std::error::Error for $Error {}
+    };
+}
+
 impl Text {
     /// Joins several texts with a separator for each language.
     #[must_use]

@@ -9,7 +9,7 @@ use super::{
     Model, OneOf, Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type,
     TypeDef, TypeRef, TypeShape, Types, Unlinked, Value, Variant,
 };
-use crate::text;
+use crate::{text, text_error};
 use std::collections::HashSet;
 
 /// The reason why a projection failed.
@@ -48,13 +48,7 @@ impl ProjectionError {
     }
 }
 
-impl std::fmt::Display for ProjectionError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for ProjectionError {}
+text_error!(ProjectionError);
 
 impl Model {
     /// Returns the model for this audience.
