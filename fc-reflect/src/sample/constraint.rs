@@ -38,12 +38,8 @@ pub(crate) fn leaf(ty: &Type, field: &Field, given: Option<&Value>, bound: Bound
         Type::Float(kind) => float(*kind, field, given, bound),
         Type::String => string(field, given, bound),
         Type::Base64 => base64(field, given, bound),
-        Type::TimestampMs => given
-            .cloned()
-            .unwrap_or(Value::Number(Number::Int(SAMPLE_MS))),
-        Type::TimestampS => given
-            .cloned()
-            .unwrap_or(Value::Number(Number::Int(SAMPLE_S))),
+        Type::TimestampMs => given.cloned().unwrap_or(int_value(SAMPLE_MS)),
+        Type::TimestampS => given.cloned().unwrap_or(int_value(SAMPLE_S)),
         // `null` would only mean that the optional field is absent.
         Type::Json if field.optional => given.cloned().unwrap_or_else(any_json),
         Type::Json | Type::Array(_) | Type::Named(_) => given.cloned().unwrap_or(Value::Null),
@@ -170,15 +166,11 @@ fn string(field: &Field, given: Option<&Value>, bound: Bound) -> Value {
         Some(Value::String(text)) => Some(text.as_str()),
         _ => None,
     };
-    let wanted = match (bound, field.details().constraints.length, base) {
-        (Bound::Least, Some((least, _)), _) if field.details().constraints.pattern.is_none() => {
-            Some(least)
-        }
-        (Bound::Most, Some((_, most)), _)
-            if field.details().constraints.pattern.is_none() && most <= LONGEST =>
-        {
-            Some(most)
-        }
+    let constraints = &field.details().constraints;
+    let is_free = constraints.pattern.is_none();
+    let wanted = match (bound, constraints.length, base) {
+        (Bound::Least, Some((least, _)), _) if is_free => Some(least),
+        (Bound::Most, Some((_, most)), _) if is_free && most <= LONGEST => Some(most),
         (_, Some((least, most)), None) => {
             let length = SAMPLE_TEXT.len() as u64;
             Some(length.clamp(least, most.max(least)))
