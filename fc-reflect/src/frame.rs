@@ -166,28 +166,23 @@ pub(crate) fn announced(
     limits: &Limits,
     bytes: &[u8],
 ) -> Result<Option<(usize, Direction)>, FrameError> {
+    let fault = |fault, detail: &str| Err(FrameError::new(fault, None, detail));
     let opens = |head: &[u8]| bytes.iter().zip(head).all(|(one, two)| one == two);
     let direction = if opens(&plan.layout.response_head) {
         Direction::Response
     } else if opens(&plan.layout.request_head) {
         Direction::Request
     } else {
-        return Err(FrameError::new(
-            FrameFault::BadHead,
-            None,
-            "no frame begins here",
-        ));
+        return fault(FrameFault::BadHead, "no frame begins here");
     };
     let raw = Raw { plan, bytes };
     let Some(total) = raw.int(HeaderRole::TotalLength) else {
         return Ok(None);
     };
     if total > limits.frame_bytes.into() {
-        let detail = format!(
-            "the frame has {total} bytes, more than the limit of {}",
-            limits.frame_bytes
-        );
-        return Err(FrameError::new(FrameFault::FrameTooLong, None, detail));
+        let limit = limits.frame_bytes;
+        let detail = format!("the frame has {total} bytes, more than the limit of {limit}");
+        return fault(FrameFault::FrameTooLong, &detail);
     }
     let length = usize::try_from(total).unwrap_or(usize::MAX);
     if length < plan.header_len {
@@ -195,7 +190,7 @@ pub(crate) fn announced(
             "the frame claims {total} bytes in all, less than its header of {}",
             plan.header_len
         );
-        return Err(FrameError::new(FrameFault::ShortFrame, None, detail));
+        return fault(FrameFault::ShortFrame, &detail);
     }
     Ok(Some((length, direction)))
 }

@@ -108,14 +108,9 @@ impl<'m> Plan<'m> {
                 response: struct_of(operation, Direction::Response),
             })
             .collect();
-        let by_code = operations
-            .iter()
-            .enumerate()
-            .filter_map(|(number, plan)| Some(((plan.kind, plan.operation.code.value?), number)));
-        let by_name = operations
-            .iter()
-            .enumerate()
-            .map(|(number, plan)| (plan.operation.name.as_str(), number));
+        let numbered = || operations.iter().zip(0..);
+        let by_code = numbered().filter_map(|(plan, number)| Some((plan.place()?, number)));
+        let by_name = numbered().map(|(plan, number)| (plan.operation.name.as_str(), number));
         Self {
             frame: FramePlan::new(&model.frame),
             request: envelope(&model.envelope.request),
@@ -228,11 +223,8 @@ fn shape(ty: &TypeDef) -> Shape<'_> {
         TypeShape::Enum(shape) => Shape::Enum(shape),
         TypeShape::OneOf(shape) => {
             let variants = shape.variants.iter();
-            Shape::Choice(
-                variants
-                    .map(|variant| (variant, variant.ty.id().index()))
-                    .collect(),
-            )
+            let variants = variants.map(|variant| (variant, variant.ty.id().index()));
+            Shape::Choice(variants.collect())
         }
     }
 }
