@@ -71,35 +71,23 @@ pub enum Amendment {
 
 /// A key of a field that an amendment sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FieldKey {
-    /// `true` if it may be absent.
-    Optional,
-    /// The smallest number.
-    Min,
-    /// The largest number.
-    Max,
-    /// The number of characters, bytes or items.
-    Length,
-    /// The pattern of a string.
-    Pattern,
-    /// The values of an enum that the field takes.
-    Only,
-    /// The leniencies of the decoder.
-    Quirk,
-}
+pub struct FieldKey(&'static str);
 
 impl FieldKey {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Optional => FIELD.optional.name,
-            Self::Min => FIELD.min.name,
-            Self::Max => FIELD.max.name,
-            Self::Length => FIELD.length.name,
-            Self::Pattern => FIELD.pattern.name,
-            Self::Only => FIELD.only.name,
-            Self::Quirk => FIELD.quirk.name,
-        }
-    }
+    /// `true` if it may be absent.
+    pub const OPTIONAL: Self = Self(FIELD.optional.name);
+    /// The smallest number.
+    pub const MIN: Self = Self(FIELD.min.name);
+    /// The largest number.
+    pub const MAX: Self = Self(FIELD.max.name);
+    /// The number of characters, bytes or items.
+    pub const LENGTH: Self = Self(FIELD.length.name);
+    /// The pattern of a string.
+    pub const PATTERN: Self = Self(FIELD.pattern.name);
+    /// The values of an enum that the field takes.
+    pub const ONLY: Self = Self(FIELD.only.name);
+    /// The leniencies of the decoder.
+    pub const QUIRK: Self = Self(FIELD.quirk.name);
 }
 
 /// Makes an amendment. `model` is the model of `sources`.
@@ -133,7 +121,7 @@ impl Editor<'_> {
                 key,
                 value,
             } => self.with(Field::TABLE, Some(owner), field, |file, entry| {
-                set(file, entry.value, key.name(), value.as_deref())
+                set(file, entry.value, key.0, value.as_deref())
             }),
             Amendment::SetType { owner, field, ty } => {
                 self.with(Field::TABLE, Some(owner), field, |file, entry| {

@@ -78,9 +78,9 @@ fn amendment(model: &Model, deviation: &Deviation<'_>) -> Option<Amendment> {
             }
         }
         DeviationKind::Body(BodyErrorKind::MissingField) => {
-            set(FieldKey::Optional, Some(true.to_string()))
+            set(FieldKey::OPTIONAL, Some(true.to_string()))
         }
-        DeviationKind::Body(BodyErrorKind::BadPattern) => set(FieldKey::Pattern, None),
+        DeviationKind::Body(BodyErrorKind::BadPattern) => set(FieldKey::PATTERN, None),
         DeviationKind::Body(BodyErrorKind::BadLength) => {
             let count = match found? {
                 Value::String(text) if field.ty == Type::Base64 => text.len() / 4 * 3,
@@ -91,7 +91,7 @@ fn amendment(model: &Model, deviation: &Deviation<'_>) -> Option<Amendment> {
             let count = u64::try_from(count).ok()?;
             let (least, most) = field.details().constraints.length?;
             let (least, most) = (least.min(count), most.max(count));
-            set(FieldKey::Length, Some(format!("[{least}, {most}]")))
+            set(FieldKey::LENGTH, Some(format!("[{least}, {most}]")))
         }
         DeviationKind::Body(BodyErrorKind::OutOfRange) => {
             range(owner, field, found?.as_f64(), set)?
@@ -111,16 +111,16 @@ fn range(
 ) -> Option<Amendment> {
     let constraints = &field.details().constraints;
     if !constraints.only.is_empty() {
-        return Some(set(FieldKey::Only, None));
+        return Some(set(FieldKey::ONLY, None));
     }
     let found = found?;
     let is_below = |least: &Number| found < least.to_f64();
     let is_above = |most: &Number| found > most.to_f64();
     if constraints.min.as_ref().is_some_and(is_below) {
-        return Some(set(FieldKey::Min, Some(found.to_string())));
+        return Some(set(FieldKey::MIN, Some(found.to_string())));
     }
     if constraints.max.as_ref().is_some_and(is_above) {
-        return Some(set(FieldKey::Max, Some(found.to_string())));
+        return Some(set(FieldKey::MAX, Some(found.to_string())));
     }
     let Type::Int(_) = field.ty else {
         return None;
@@ -151,7 +151,7 @@ fn wrong_type(
 ) -> Amendment {
     let is_number = matches!(field.ty, Type::Int(_) | Type::Float(_));
     let quirk = match (&field.ty, found) {
-        (_, Value::Null) => return set(FieldKey::Optional, Some(true.to_string())),
+        (_, Value::Null) => return set(FieldKey::OPTIONAL, Some(true.to_string())),
         (Type::Bool, Value::Number(_) | Value::String(_)) => Quirk::LenientBool,
         (_, Value::Number(_)) if is_number && field.wire_form == WireForm::String => {
             Quirk::LenientNumber
@@ -163,7 +163,7 @@ fn wrong_type(
     };
     let mut quirks: Vec<_> = field.details().quirks.iter().map(|it| it.name()).collect();
     quirks.push(quirk.name());
-    set(FieldKey::Quirk, Some(format!("[{}]", quirks.join(", "))))
+    set(FieldKey::QUIRK, Some(format!("[{}]", quirks.join(", "))))
 }
 
 /// Returns the type of a new field with this value, as the spec writes it.
