@@ -57,7 +57,8 @@ struct BodyDump {
 
 impl From<Exchange> for ExchangeDump {
     fn from(exchange: Exchange) -> Self {
-        let of = |kind, request: Option<Body>, response: Option<Body>| Self {
+        let both = |messages: Messages| [Some(messages.request), Some(messages.response)];
+        let of = |kind, [request, response]: [Option<Body>; 2]| Self {
             kind,
             effect: None,
             effect_state: None,
@@ -85,11 +86,7 @@ impl From<Exchange> for ExchangeDump {
                 effect_state: Some(effect_state),
                 sets_off,
                 accepted,
-                ..of(
-                    Kind::Command,
-                    Some(messages.request),
-                    Some(messages.response),
-                )
+                ..of(Kind::Command, both(messages))
             },
             Exchange::Report {
                 ack,
@@ -102,11 +99,7 @@ impl From<Exchange> for ExchangeDump {
                 cadence,
                 state,
                 failures,
-                ..of(
-                    Kind::Report,
-                    Some(messages.request),
-                    Some(messages.response),
-                )
+                ..of(Kind::Report, both(messages))
             },
             Exchange::Stream(stream) => {
                 let (content, body) = match stream.content {
@@ -117,7 +110,7 @@ impl From<Exchange> for ExchangeDump {
                     content,
                     started_by: stream.started_by,
                     stopped_by: stream.stopped_by,
-                    ..of(Kind::Stream, body, None)
+                    ..of(Kind::Stream, [body, None])
                 }
             }
         }
@@ -162,9 +155,7 @@ impl TryFrom<ExchangeDump> for Exchange {
         Ok(match flat.kind {
             Kind::Command => Self::Command {
                 effect: flat.effect.ok_or("a command without `effect`")?,
-                effect_state: flat
-                    .effect_state
-                    .ok_or("a command without `effect_state`")?,
+                effect_state: (flat.effect_state).ok_or("a command without `effect_state`")?,
                 sets_off: flat.sets_off,
                 accepted: flat.accepted,
                 messages: messages(request).ok_or("a command without the type of a body")?,
