@@ -163,14 +163,12 @@ pub fn scaffold(
             place: place(&other.location),
         });
     }
-    let starter = match new.started_by {
-        Some(name) => {
-            let starter = model.operation(name);
-            let starter = starter.filter(|it| it.kind() == Kind::Command);
-            Some(starter.ok_or_else(|| ScaffoldError::NotACommand(name.to_owned()))?)
-        }
-        None => None,
-    };
+    let starter = new.started_by.map(|name| {
+        let starter = model.operation(name);
+        let starter = starter.filter(|it| it.kind() == Kind::Command);
+        starter.ok_or_else(|| ScaffoldError::NotACommand(name.to_owned()))
+    });
+    let starter = starter.transpose()?;
     let next = usage.and_then(|usage| model.next_code(usage, Some(new.group)));
     let shared = starter.and_then(|starter| starter.code.value);
     let code = new.code.or(shared).or(next);
@@ -197,11 +195,8 @@ pub fn scaffold(
         Some(entry) => inside(source, entry).ok_or_else(layout)?,
         None => Place::of_section(source, tree.root(), section),
     };
-    let heading = if place.heading {
-        format!("{section}:\n")
-    } else {
-        String::new()
-    };
+    let heading = place.heading.then(|| format!("{section}:\n"));
+    let heading = heading.unwrap_or_default();
     let block = place.indented(&beginning(new, code));
     let before = source.text.get(..place.at).ok_or_else(layout)?;
     let mut lines = before
@@ -316,11 +311,8 @@ impl Place {
         let rank = order.rank(section);
         let next = root.entries().find(|entry| order.rank(entry.name()) > rank);
         let at = next.map(|next| {
-            let key = next.key.span().start;
-            next.key
-                .comments()
-                .map(|span| span.start)
-                .fold(key, usize::min)
+            let comments = next.key.comments().map(|span| span.start);
+            comments.fold(next.key.span().start, usize::min)
         });
         Self {
             at: at.unwrap_or(source.text.len()),
