@@ -115,6 +115,12 @@ impl Diagnostic {
         self
     }
 
+    /// Adds another place, if there is one.
+    pub(crate) fn also_if(mut self, span: Option<Span>, text: Text) -> Self {
+        self.secondary.extend(span.map(|span| Label { span, text }));
+        self
+    }
+
     /// Adds a note.
     #[must_use]
     pub fn note(mut self, text: Text) -> Self {

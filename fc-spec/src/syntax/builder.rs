@@ -269,7 +269,7 @@ impl<'a> Builder<'a> {
     fn alias(&mut self, span: Span, anchor: Option<Span>, faults: &mut Faults) -> Result<(), Stop> {
         self.alias = Some(span.start);
         let name = self.text.get(span.start..span.end).unwrap_or_default();
-        let mut fault = Diagnostic::error(
+        let fault = Diagnostic::error(
             FaultCode::Alias,
             span,
             text!("别名 `{name}`", "the alias `{name}`"),
@@ -285,10 +285,8 @@ impl<'a> Builder<'a> {
         .note(text!(
             "如果文本以 `*` 开头，给它加上引号",
             "put the text in quotes if it starts with a `*`"
-        ));
-        if let Some(anchor) = anchor {
-            fault = fault.also(anchor, text!("指的是这个值", "refers to this value"));
-        }
+        ))
+        .also_if(anchor, text!("指的是这个值", "refers to this value"));
         // The error of the merge key covers its value.
         if !self.is_merged {
             faults.push(fault);

@@ -154,17 +154,10 @@ fn closed_by(open: char, close: char, place: &Place<'_>) -> Diagnostic {
             "改写为 `{close_right}`，或补上左括号",
             "write `{close_right}` instead, or add the opening bracket"
         ));
-    match place
-        .text
-        .get(place.understood..)
-        .and_then(|rest| rest.find(close))
-    {
-        Some(at) => fault.also(
-            place.character(place.understood + at),
-            text!("在这里闭合", "closed here"),
-        ),
-        None => fault,
-    }
+    let rest = place.text.get(place.understood..).unwrap_or_default();
+    let closed = rest.find(close);
+    let closed = closed.map(|at| place.character(place.understood + at));
+    fault.also_if(closed, text!("在这里闭合", "closed here"))
 }
 
 /// Returns the start of the line before the error, if its indentation is the cause. The line of the error then has the
@@ -208,11 +201,8 @@ fn colon(place: &Place<'_>) -> Diagnostic {
     let lacks_colon = before.filter(|value| {
         let line = super::recover::line_start(place.text, value.start);
         let blanks = place.text.get(line..value.start).unwrap_or_default();
-        let is_plain = !place
-            .text
-            .get(value.start..)
-            .unwrap_or_default()
-            .starts_with(['"', '\'', '|', '>']);
+        let text = place.text.get(value.start..).unwrap_or_default();
+        let is_plain = !text.starts_with(['"', '\'', '|', '>']);
         is_plain && blanks.trim_matches([' ', '-']).is_empty()
     });
     if let Some(value) = lacks_colon {
@@ -237,16 +227,11 @@ fn colon(place: &Place<'_>) -> Diagnostic {
             "write `key: value`, or `- value` with a space after the dash"
         ));
     }
-    match before {
-        Some(value) => fault.also(
-            place.character(value.start),
-            text!(
-                "这一行属于从这里开始的值",
-                "the line belongs to the value that starts here"
-            ),
-        ),
-        None => fault,
-    }
+    let label = text!(
+        "这一行属于从这里开始的值",
+        "the line belongs to the value that starts here"
+    );
+    fault.also_if(before.map(|value| place.character(value.start)), label)
 }
 
 /// Returns the error for brackets whose content is followed by neither `,` nor their end.
@@ -298,13 +283,8 @@ fn behind_quote(place: &Place<'_>) -> Diagnostic {
             "引号中要写引号：'…' 中写 `''`，\"…\" 中写 `\\\"`",
             "to write a quote inside quotes: `''` in '…', `\\\"` in \"…\""
         ));
-    match place.quote() {
-        Some(quote) => fault.also(
-            quote,
-            text!("引号中的文本从这里开始", "the quoted text starts here"),
-        ),
-        None => fault,
-    }
+    let label = text!("引号中的文本从这里开始", "the quoted text starts here");
+    fault.also_if(place.quote(), label)
 }
 
 /// Returns the error for too many brackets or levels.
@@ -380,14 +360,7 @@ fn unclosed_quote(place: &Place<'_>) -> Diagnostic {
     let fault = Diagnostic::error(FaultCode::Unclosed, quote, message)
         .label(text!("从这里开始", "opened here"));
     let rest = place.text.get(place.at..).unwrap_or_default();
-    if rest.trim().is_empty() {
-        fault.note(note)
-    } else {
-        fault
-            .also(
-                place.here(),
-                text!("到这里无法继续", "cannot continue here"),
-            )
-            .note(note)
-    }
+    let stopped = (!rest.trim().is_empty()).then(|| place.here());
+    let label = text!("到这里无法继续", "cannot continue here");
+    fault.also_if(stopped, label).note(note)
 }
