@@ -50,12 +50,9 @@ impl Settings {
     pub fn level(&self, rule: &Rule, house: Option<&str>) -> Level {
         let own = house.and_then(|id| self.levels.get(id));
         let categories = std::iter::successors(Some(rule.category), |it| it.within());
-        let said = own
-            .or_else(|| self.levels.get(rule.code.number))
-            .or_else(|| {
-                let mut it = categories;
-                it.find_map(|it| self.levels.get(it.name()))
-            });
+        let keys = std::iter::once(rule.code.number);
+        let mut keys = keys.chain(categories.map(Category::name));
+        let said = own.or_else(|| keys.find_map(|key| self.levels.get(key)));
         let usual = || {
             let house = house.and_then(|id| self.house.iter().find(|rule| rule.id == id));
             house.map_or(rule.level, |house| house.level)
@@ -80,14 +77,12 @@ pub fn settings(root: &Path, file: &str, faults: &mut Faults) -> (Settings, Sour
         ids: HashMap::new(),
         faults,
     };
-    let mut named = read(root, file, &mut sources, &mut reader, true);
     // A rule file cannot list other files, so one pass is enough.
-    for file in named.drain(..) {
+    for file in read(root, file, &mut sources, &mut reader, true) {
         read(root, &file, &mut sources, &mut reader, false);
     }
     reader.check_levels();
-    let settings = reader.settings;
-    (settings, sources)
+    (reader.settings, sources)
 }
 
 /// Reads a file and returns the files that it lists.
@@ -134,10 +129,8 @@ fn read(
     let at = lint.key.span();
     check_kind(&Lint::KIND, lint.value, at, reader.texts, reader.faults);
     reader.levels(lint.value);
-    LINT.house
-        .of(lint.value)
-        .map(|it| reader.house(it))
-        .unwrap_or_default()
+    let house = LINT.house.of(lint.value);
+    house.map(|it| reader.house(it)).unwrap_or_default()
 }
 
 pub(super) struct Reader<'f> {

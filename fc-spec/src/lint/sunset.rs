@@ -57,14 +57,11 @@ fn sunset_near(search: &mut Search<'_>) {
         let left = months(sunset).zip(months(today));
         !is_past(sunset, today) && left.is_some_and(|(last, now)| last - now <= NEAR)
     };
-    with_sunset(
-        search,
-        is_near,
-        [
-            "deprecated, and to be removed after",
-            "弃用，最后可用日期：",
-        ],
-    );
+    let what = [
+        "deprecated, and to be removed after",
+        "弃用，最后可用日期：",
+    ];
+    with_sunset(search, is_near, what);
 }
 
 fn sunset_passed(search: &mut Search<'_>) {
