@@ -197,49 +197,34 @@ impl<'m> Judge<'m> {
     }
 
     /// Judges the reports that a command sets off.
-    fn sets_off(&mut self, old: &Operation, new: &Operation) {
-        let name = |report: &str| {
-            let new_name = self.new_names.get(report).copied();
-            new_name.unwrap_or(report).to_owned()
-        };
-        let before: Vec<String> = old.sets_off().iter().map(|it| name(&it.report)).collect();
-        let after: Vec<String> = new.sets_off().iter().map(|it| it.report.clone()).collect();
-        let has_code = |model: &Model, report: &str| {
+    fn sets_off(&mut self, old: &'m Operation, new: &'m Operation) {
+        let name = |report: &'m str| self.new_names.get(report).copied().unwrap_or(report);
+        let before: Vec<&str> = old.sets_off().iter().map(|it| name(&it.report)).collect();
+        let after: Vec<&str> = new.sets_off().iter().map(|it| &*it.report).collect();
+        // Programs can follow a report if it and the command have codes.
+        let can_follow = |model: &Model, command: &Operation, report: &str| {
             let report = model.operation(report);
-            report.is_some_and(|it| it.code.value.is_some())
+            let report_code = report.and_then(|it| it.code.value);
+            command.code.value.is_some() && report_code.is_some()
         };
-        // Programs can follow reports with a code.
-        let followed = old
-            .sets_off()
-            .iter()
-            .filter(|it| has_code(self.old, &it.report));
-        let followed: Vec<String> = match old.code.value {
-            Some(_) => followed.map(|it| name(&it.report)).collect(),
-            None => Vec::new(),
-        };
-        let follow: Vec<&String> = match new.code.value {
-            Some(_) => after.iter().filter(|it| has_code(self.new, it)).collect(),
-            None => Vec::new(),
-        };
-        let is_first_other = followed.first() != follow.first().copied();
+        let followed = old.sets_off().iter();
+        let followed = followed.filter(|it| can_follow(self.old, old, &it.report));
+        let followed: Vec<&str> = followed.map(|it| name(&it.report)).collect();
+        let follow = after.iter().copied();
+        let follow: Vec<&str> = follow.filter(|it| can_follow(self.new, new, it)).collect();
+        let is_first_other = followed.first() != follow.first();
         let mut findings = Vec::new();
         for report in before.iter().filter(|it| !after.contains(it)) {
-            let source = rules::SET_OFF_REMOVED
-                .source
-                .iter()
-                .copied()
-                .filter(|language| {
-                    // In TypeScript, the type of a call names the first report only.
-                    followed.contains(report)
-                        && (*language != Language::Typescript || is_first_other)
-                });
-            let source: Vec<Language> = source.collect();
             let finding = Finding::new(&rules::SET_OFF_REMOVED, &new.name, [report, ""]);
-            findings.push(finding.source(source));
+            let mut finding = finding.source_if(followed.contains(report));
+            // In TypeScript, the type of a call names the first report only.
+            let is_told = |it: &Language| *it != Language::Typescript || is_first_other;
+            finding.source.retain(is_told);
+            findings.push(finding);
         }
         for report in after.iter().filter(|it| !before.contains(it)) {
             let source: &[Language] = match followed.as_slice() {
-                _ if !follow.contains(&report) => &[],
+                _ if !follow.contains(report) => &[],
                 // The method returns a call that can be followed.
                 [] => &[Language::Python, Language::Typescript],
                 // The names of the methods get the name of the report.
