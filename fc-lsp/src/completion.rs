@@ -3,14 +3,14 @@
 //! A half-typed line breaks the grammar of the spec language, and usually YAML as well. So completion parses the file
 //! with a placeholder word at the cursor. It tries the placeholder as a key and as a value, and closes open brackets.
 
-use crate::language::{self, both};
+use crate::language::{self, both, markdown};
 use crate::snapshot::Snapshot;
 use fc_spec::diagnostic::Faults;
 use fc_spec::index::{Occurrence, OtherKey, occurrence_at};
 use fc_spec::language::Word;
 use fc_spec::source::{FileId, SourceFile, Span};
 use fc_spec::syntax::parse;
-use gen_lsp_types::{CompletionItem, CompletionItemKind, MarkupContent, MarkupKind, TextEdit};
+use gen_lsp_types::{CompletionItem, CompletionItemKind, TextEdit};
 
 /// The placeholder. No spec contains this word.
 const WORD: &str = "zzz_here_zzz";
@@ -162,12 +162,8 @@ impl Found<'_> {
             ""
         };
         let text = both(&known.text, lang);
-        self.add(
-            key.name,
-            CompletionItemKind::Property,
-            required.to_owned(),
-            Some(text),
-        );
+        let kind = CompletionItemKind::Property;
+        self.add(key.name, kind, required.to_owned(), Some(text));
         let after = if key.opens_lines { ":" } else { ": " };
         let new_text = key.name.to_owned() + after;
         let range = self.snapshot.range(self.replaced);
@@ -184,12 +180,8 @@ impl Found<'_> {
         let lang = self.snapshot.settings.lang;
         let about = both(&word.text, lang);
         let detail = lang.text(&word.text).to_owned();
-        self.add(
-            word.word,
-            CompletionItemKind::EnumMember,
-            detail,
-            Some(about),
-        );
+        let kind = CompletionItemKind::EnumMember;
+        self.add(word.word, kind, detail, Some(about));
     }
 
     /// Adds the definitions of a kind. Enum values come from the enum at the cursor only.
@@ -210,21 +202,13 @@ impl Found<'_> {
 
     fn add(&mut self, label: &str, kind: CompletionItemKind, detail: String, text: Option<String>) {
         let range = self.snapshot.range(self.replaced);
-        let edit = TextEdit {
-            range,
-            new_text: label.to_owned(),
-        };
+        let new_text = label.to_owned();
+        let edit = TextEdit { range, new_text };
         self.items.push(CompletionItem {
             label: label.to_owned(),
             kind: Some(kind),
             detail: (!detail.is_empty()).then_some(detail),
-            documentation: text.map(|value| {
-                MarkupContent {
-                    kind: MarkupKind::Markdown,
-                    value,
-                }
-                .into()
-            }),
+            documentation: text.map(|text| markdown(text).into()),
             sort_text: Some(format!("{:03}", self.items.len())),
             text_edit: Some(edit.into()),
             ..CompletionItem::default()

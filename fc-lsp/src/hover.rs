@@ -2,7 +2,7 @@
 //! JSON example.
 
 use crate::item::of_site;
-use crate::language::{self, both};
+use crate::language::{self, both, markdown};
 use crate::snapshot::Snapshot;
 use fc_codegen::emit::rust;
 use fc_reflect::sample::{Profile, Samples};
@@ -10,7 +10,7 @@ use fc_spec::index::{DefId, Occurrence, Role};
 use fc_spec::model::Lang;
 use fc_spec::model::{Direction, Model, Operation, Text, TypeDef, TypeShape, Value};
 use fc_spec::source::FileId;
-use gen_lsp_types::{Hover, MarkupContent, MarkupKind};
+use gen_lsp_types::Hover;
 use std::fmt::Write as _;
 
 /// The maximum number of lines of Rust or JSON that a hover shows.
@@ -30,11 +30,7 @@ pub fn hover(snapshot: &Snapshot, at: (FileId, usize)) -> Option<Hover> {
         Some((of_word(snapshot, occurrence)?, span))
     })?;
     Some(Hover {
-        contents: MarkupContent {
-            kind: MarkupKind::Markdown,
-            value: text,
-        }
-        .into(),
+        contents: markdown(text).into(),
         range: Some(snapshot.range(span)),
     })
 }

@@ -3,6 +3,7 @@
 use fc_spec::language::{Key, Part, reference};
 use fc_spec::model::Lang;
 use fc_spec::model::Text;
+use gen_lsp_types::{MarkupContent, MarkupKind};
 use std::sync::OnceLock;
 
 /// Returns a key of a part.
@@ -16,6 +17,14 @@ pub fn part(id: &str) -> Option<&'static Part> {
     static LANGUAGE: OnceLock<Vec<Part>> = OnceLock::new();
     let parts = LANGUAGE.get_or_init(reference);
     parts.iter().find(|part| part.id == id)
+}
+
+/// Returns Markdown for a client.
+pub fn markdown(value: String) -> MarkupContent {
+    MarkupContent {
+        kind: MarkupKind::Markdown,
+        value,
+    }
 }
 
 /// Returns a text in both languages as paragraphs, the client's language first.
