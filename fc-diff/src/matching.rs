@@ -137,19 +137,12 @@ pub(crate) struct TypePairs<'m> {
     pub(crate) added: Vec<&'m TypeDef>,
 }
 
-/// Returns the other side.
-pub(crate) fn receiver(sender: Side) -> Side {
-    match sender {
-        Side::App => Side::Robot,
-        Side::Robot => Side::App,
-    }
-}
-
 /// Returns the sender of a direction of an operation.
 pub(crate) fn sender(operation: &Operation, direction: Direction) -> Side {
-    match direction {
-        Direction::Request => operation.sender,
-        Direction::Response => receiver(operation.sender),
+    match (direction, operation.sender) {
+        (Direction::Request, sender) => sender,
+        (Direction::Response, Side::App) => Side::Robot,
+        (Direction::Response, Side::Robot) => Side::App,
     }
 }
 

@@ -148,14 +148,10 @@ fn text(findings: &[Finding], old: &Version, new: &Version, lang: Lang) -> Strin
         let breaks = breaks(finding, lang);
         if !breaks.is_empty() {
             let _ = writeln!(text, "    {}{breaks}", pick(lang, ["breaks: ", "影响："]));
+            let label = pick(lang, ["waiver: ", "豁免编号："]);
             let _ = match &finding.waived {
                 Some(waiver) => writeln!(text, "    {}", waived(waiver, lang)),
-                None => writeln!(
-                    text,
-                    "    {}{}",
-                    pick(lang, ["waiver: ", "豁免编号："]),
-                    finding.waiver_id()
-                ),
+                None => writeln!(text, "    {label}{}", finding.waiver_id()),
             };
         }
         for (sign, path, line, written) in excerpts(finding, [old, new]) {

@@ -14,30 +14,26 @@ impl<'m> Judge<'m> {
     /// Judges the ranges of codes that a robot passes through.
     pub(super) fn ranges(&mut self) {
         let (old, new) = (methods(self.old), methods(self.new));
-        let spans = |of: &BTreeMap<String, &CodeRange>| -> Vec<String> {
-            of.values().map(|it| span(it)).collect()
+        let shown = |of: &BTreeMap<String, &CodeRange>| {
+            let spans: Vec<String> = of.values().map(|it| span(it)).collect();
+            spans.join(", ")
         };
-        let values = [spans(&old), spans(&new)];
+        let values = [shown(&old), shown(&new)];
         let is_lost = old.keys().any(|name| !new.contains_key(name));
         if values[0] == values[1] && !is_lost {
             return;
         }
-        let values = values.map(|it| it.join(", "));
         let subject = format!("codes.{}", RangeUse::PassThrough.name());
         let finding = Finding::new(&rules::PASS_THROUGH, subject, both(&values));
-        let all = |of: BTreeMap<String, &CodeRange>| -> Vec<CodeRange> {
-            of.into_values().cloned().collect()
-        };
-        let (old, new) = (all(old), all(new));
         let mut finding = finding.source_if(is_lost);
-        for range in &old {
+        for range in old.values() {
             finding = finding.was("range", span(range));
         }
-        for range in &new {
+        for range in new.values() {
             finding = finding.is("range", span(range));
         }
         let is_in = |ranges: &[CodeRange], first: u16| ranges.iter().any(|it| it.first == first);
-        for range in old.iter().chain(&new) {
+        for range in old.values().chain(new.values()) {
             let first = range.first.to_string();
             if is_in(&self.old.ranges, range.first) && is_in(&self.new.ranges, range.first) {
                 for key in ["to", "to_spelling", "use"] {
@@ -135,16 +131,12 @@ impl<'m> Judge<'m> {
 /// Returns the pass-through ranges by the names of their methods.
 fn methods(model: &Model) -> BTreeMap<String, &CodeRange> {
     let ranges = model.ranges.iter();
-    let ranges = ranges.filter(|range| range.usage == RangeUse::PassThrough);
     let mut named = BTreeMap::new();
-    for range in ranges {
-        let name = RangeUse::PassThrough.name().to_owned();
-        let is_taken = named.contains_key(&name) || model.operation(&name).is_some();
-        let name = if is_taken {
-            format!("{name}_{:04x}", range.first)
-        } else {
-            name
-        };
+    for range in ranges.filter(|range| range.usage == RangeUse::PassThrough) {
+        let mut name = RangeUse::PassThrough.name().to_owned();
+        if named.contains_key(&name) || model.operation(&name).is_some() {
+            name = format!("{name}_{:04x}", range.first);
+        }
         named.insert(name, range);
     }
     named

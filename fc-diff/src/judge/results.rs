@@ -7,7 +7,7 @@ use crate::matching::{self, Pair};
 use crate::rule::Wire;
 use crate::rules::fields::NAME_CHANGED;
 use crate::rules::results as rules;
-use fc_spec::model::{ResultCode, Table};
+use fc_spec::model::{CallDefaults, ResultCode, Side, Table};
 
 impl Judge<'_> {
     pub(super) fn results(&mut self) {
@@ -91,11 +91,10 @@ impl Judge<'_> {
 
     fn times(&mut self) {
         let (old, new) = (self.old.calls, self.new.calls);
-        let is_longer = |it: fc_spec::model::CallDefaults| it.handler_timeout_ms >= it.timeout_ms;
+        let is_longer = |it: CallDefaults| it.handler_timeout_ms >= it.timeout_ms;
         if is_longer(new) && !is_longer(old) {
-            let shown = |it: fc_spec::model::CallDefaults| {
-                format!("{} / {} ms", it.handler_timeout_ms, it.timeout_ms)
-            };
+            let shown =
+                |it: CallDefaults| format!("{} / {} ms", it.handler_timeout_ms, it.timeout_ms);
             let values = [shown(old), shown(new)];
             let finding = Finding::new(&rules::TIMES, "calls.handler_timeout_ms", both(&values));
             self.report(finding.at("calls", "calls"));
@@ -108,11 +107,8 @@ impl Judge<'_> {
         {
             let values = [age(old.max_age_ms), age(new.max_age_ms)];
             let finding = Finding::new(&rules::TIMES, "calls.max_age_ms", both(&values));
-            let senders = Senders {
-                app: true,
-                robot: false,
-            };
-            self.report(finding.at("calls", "calls").on(senders, Wire::OldSender));
+            let finding = finding.on(Senders::of(Side::App), Wire::OldSender);
+            self.report(finding.at("calls", "calls"));
             self.claim(&["protocol", "calls", "max_age_ms"]);
         }
     }
