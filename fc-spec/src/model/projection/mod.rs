@@ -6,8 +6,8 @@ mod operation;
 
 use super::{
     Answer, Asked, Available, Condition, Constraints, EnumType, Example, Field, FieldDetails,
-    Model, OneOf, Operation, Question, RetiredCode, Scalar, StructType, Subject, Text, Type,
-    TypeDef, TypeRef, TypeShape, Types, Unlinked, Value, Variant,
+    Model, OneOf, Operation, RetiredCode, Scalar, StructType, Subject, Text, Type, TypeDef,
+    TypeRef, TypeShape, Types, Unlinked, Value, Variant,
 };
 use crate::{text, text_error};
 use std::collections::HashSet;
@@ -115,20 +115,17 @@ impl Model {
         let is_here = |subject: &Subject| match subject {
             Subject::Operation(name) => operations.iter().any(|it| it.name == *name),
             Subject::Type(name) => types.named(name).is_some(),
-            Subject::Field { owner, key } => types.named(owner).is_some_and(|ty| match &ty.shape {
-                TypeShape::Struct(shape) => shape.fields.iter().any(|field| field.wire == *key),
-                TypeShape::Enum(_) | TypeShape::OneOf(_) => true,
+            Subject::Field { owner, key } => types.named(owner).is_some_and(|ty| {
+                let shape = ty.shape.structure();
+                shape.is_none_or(|shape| shape.field(key).is_some())
             }),
             _ => true,
         };
-        self.answers
-            .retain(|answer: &Answer| is_here(&answer.subject));
-        self.questions
-            .retain(|question: &Question| is_here(&question.subject));
+        self.answers.retain(|it| is_here(&it.subject));
+        self.questions.retain(|it| is_here(&it.subject));
         let answered: HashSet<String> = ids(&self.answers).collect();
         let is_for_others = |id: &String| asked.contains(id) && !answered.contains(id);
-        self.conflicts
-            .retain(|conflict| !is_for_others(&conflict.id));
+        self.conflicts.retain(|it| !is_for_others(&it.id));
     }
 }
 
@@ -152,12 +149,8 @@ impl View<'_> {
 
     /// Returns the remaining types without their parts for other audiences.
     fn types(&self, model: &Model) -> Types {
-        let types: Vec<TypeDef> = self
-            .model
-            .types
-            .iter()
-            .map(|ty| self.type_def(ty))
-            .collect();
+        let types = self.model.types.iter();
+        let types: Vec<TypeDef> = types.map(|ty| self.type_def(ty)).collect();
         let mut used = vec![false; types.len()];
         let bodies = model.operations.iter().flat_map(Operation::bodies);
         let bodies = bodies.map(|body| &*body.ty);
@@ -267,10 +260,8 @@ impl View<'_> {
 
     fn enumeration(&self, shape: &EnumType) -> EnumType {
         let values = shape.values.iter();
-        let mut values: Vec<_> = values
-            .filter(|value| self.has(value.available.as_ref()))
-            .cloned()
-            .collect();
+        let values = values.filter(|value| self.has(value.available.as_ref()));
+        let mut values: Vec<_> = values.cloned().collect();
         let names: HashSet<String> = values.iter().map(|value| value.name.clone()).collect();
         for value in &mut values {
             value.then.retain(|next| names.contains(next));
