@@ -64,12 +64,9 @@ impl Senders {
         let (old, new) = (wire.breaks_old_sender(), wire.breaks_new_sender());
         let old_app = (self.app && old) || (self.robot && new);
         let new_app = (self.app && new) || (self.robot && old);
-        let each = [
-            (old_app, Deployment::OldAppNewRobot),
-            (new_app, Deployment::NewAppOldRobot),
-        ];
-        let broken = each.into_iter().filter(|(broken, _)| *broken);
-        broken.map(|(_, deployment)| deployment).collect()
+        let old_app = old_app.then_some(Deployment::OldAppNewRobot);
+        let new_app = new_app.then_some(Deployment::NewAppOldRobot);
+        old_app.into_iter().chain(new_app).collect()
     }
 }
 

@@ -71,11 +71,8 @@ impl Walk<'_> {
             path.push(key.clone());
             let is_stale = (key == "zh" || key == "en") && texts[0] != texts[1];
             if is_stale && one != other && !self.is_judged(path) {
-                self.found.push(Finding::new(
-                    &DOCS,
-                    path.join("."),
-                    [&shown(one), &shown(other)],
-                ));
+                let values = [&*shown(one), &*shown(other)];
+                self.found.push(Finding::new(&DOCS, path.join("."), values));
             } else {
                 self.compare(path, one, other);
             }
@@ -135,10 +132,8 @@ impl Walk<'_> {
     }
 
     fn is_judged(&self, path: &Path) -> bool {
-        (1..=path.len()).any(|length| {
-            path.get(..length)
-                .is_some_and(|it| self.account.claims.contains(it))
-        })
+        let mut above = (1..=path.len()).filter_map(|length| path.get(..length));
+        above.any(|it| self.account.claims.contains(it))
     }
 }
 
@@ -165,9 +160,8 @@ fn key(path: &Path) -> &'static [&'static str] {
 fn by_id<'v>(items: &'v [Value], keys: &[&str]) -> Option<List<'v>> {
     let mut list = List::new();
     for item in items {
-        let parts = keys
-            .iter()
-            .filter_map(|key| item.get(key).filter(|it| !it.is_null()));
+        let parts = keys.iter().filter_map(|key| item.get(key));
+        let parts = parts.filter(|part| !part.is_null());
         let parts = parts.map(|part| {
             part.as_str()
                 .map_or_else(|| part.to_string(), str::to_owned)
