@@ -1,35 +1,86 @@
 //! Checks values that may have one of several forms.
 
+use super::Shape;
 use super::expected::{describe_either, wrong_kind};
-use super::{check_kind, check_map};
-use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::diagnostic::{Diagnostic, FaultCode, nearest};
 use crate::language::grammar::{FIELD, FIELD_FORMS, Kind, TEXT, Table};
 use crate::language::scalar;
-use crate::model::Languages;
 use crate::source::Span;
 use crate::syntax::{Entry, Node};
 use crate::text;
 
-/// Checks the node against the most likely alternative: an exact match, otherwise a similar word, otherwise the first
-/// candidate.
-pub(super) fn check_either(
-    kinds: &[Kind],
-    node: Node<'_>,
-    at: Span,
-    texts: Languages,
-    faults: &mut Faults,
-) {
-    let candidates: Vec<_> = kinds.iter().filter(|kind| kind.could_be(node)).collect();
-    let chosen = candidates
-        .iter()
-        .find(|kind| fits(kind, node))
-        .or_else(|| candidates.iter().find(|kind| is_nearly(kind, node)))
-        .or(candidates.first());
-    if let Some(kind) = chosen {
-        check_kind(kind, node, at, texts, faults);
-    } else {
-        let expected = describe_either(kinds);
-        wrong_kind(&expected, node, at, faults);
+impl Shape<'_> {
+    /// Checks the node against the most likely alternative: an exact match, otherwise a similar word, otherwise the
+    /// first candidate.
+    pub(super) fn either(&mut self, kinds: &[Kind], node: Node<'_>, at: Span) {
+        let candidates: Vec<_> = kinds.iter().filter(|kind| kind.could_be(node)).collect();
+        let chosen = candidates
+            .iter()
+            .find(|kind| fits(kind, node))
+            .or_else(|| candidates.iter().find(|kind| is_nearly(kind, node)))
+            .or(candidates.first());
+        if let Some(kind) = chosen {
+            self.kind(kind, node, at);
+        } else {
+            wrong_kind(&describe_either(kinds), node, at, self.faults);
+        }
+    }
+
+    pub(super) fn by_key(
+        &mut self,
+        tables: &'static [(&'static str, &'static Table)],
+        otherwise: &Kind,
+        node: Node<'_>,
+        at: Span,
+    ) {
+        let entries = node.entries().filter(|entry| entry.value.is_null());
+        let slips: Vec<_> = entries.filter_map(|entry| entry.key.slip()).collect();
+        if !slips.is_empty() && tables.iter().all(|(mark, _)| node.entry(mark).is_none()) {
+            self.faults.extend(slips);
+            return;
+        }
+        let mut marks = tables
+            .iter()
+            .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
+        let Some((first, table)) = marks.next() else {
+            return match likely(tables, otherwise, node) {
+                Some(table) => self.map(table, node, at),
+                None => self.kind(otherwise, node, at),
+            };
+        };
+        if let Some(marker) = misread_marker(node) {
+            self.faults.hide(node.span());
+            let name = marker.name();
+            let message = text!(
+                "`{name}` 是字段完整写法的开头，所以不会当作报文中的键名",
+                "`{name}` starts the long form of a field, so it is not read as a wire key"
+            );
+            self.faults.push(
+                Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(text!("把外层对象写成 `{{ fields: {{ {name}: … }} }}`；`fields:` 之下都是报文中的键名", "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key")),
+            );
+            return;
+        }
+        if let Some((second, _)) = marks.next() {
+            self.faults.hide(node.span());
+            self.faults.push(
+                Diagnostic::error(
+                    FaultCode::TwoForms,
+                    second.key.span(),
+                    text!(
+                        "`{first}` 和 `{second}` 不能同时使用",
+                        "`{first}` and `{second}` cannot be combined",
+                        first = first.name(),
+                        second = second.name()
+                    ),
+                )
+                .also(
+                    first.key.span(),
+                    text!("这里已经定义了字段", "this already defines the field"),
+                ),
+            );
+            return;
+        }
+        self.map(table, node, at);
     }
 }
 
@@ -53,65 +104,6 @@ fn is_nearly(kind: &Kind, node: Node<'_>) -> bool {
         }
         _ => false,
     }
-}
-
-pub(super) fn check_by_key(
-    tables: &'static [(&'static str, &'static Table)],
-    otherwise: &Kind,
-    node: Node<'_>,
-    at: Span,
-    texts: Languages,
-    faults: &mut Faults,
-) {
-    let entries = node.entries().filter(|entry| entry.value.is_null());
-    let slips: Vec<_> = entries.filter_map(|entry| entry.key.slip()).collect();
-    if !slips.is_empty() && tables.iter().all(|(mark, _)| node.entry(mark).is_none()) {
-        faults.extend(slips);
-        return;
-    }
-    let mut marks = tables
-        .iter()
-        .filter_map(|(mark, table)| Some((node.entry(mark)?, *table)));
-    let Some((first, table)) = marks.next() else {
-        match likely(tables, otherwise, node) {
-            Some(table) => check_map(table, node, at, texts, faults),
-            None => check_kind(otherwise, node, at, texts, faults),
-        }
-        return;
-    };
-    if let Some(marker) = misread_marker(node) {
-        faults.hide(node.span());
-        let name = marker.name();
-        let message = text!(
-            "`{name}` 是字段完整写法的开头，所以不会当作报文中的键名",
-            "`{name}` starts the long form of a field, so it is not read as a wire key"
-        );
-        faults.push(
-            Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(text!("把外层对象写成 `{{ fields: {{ {name}: … }} }}`；`fields:` 之下都是报文中的键名", "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key")),
-        );
-        return;
-    }
-    if let Some((second, _)) = marks.next() {
-        faults.hide(node.span());
-        faults.push(
-            Diagnostic::error(
-                FaultCode::TwoForms,
-                second.key.span(),
-                text!(
-                    "`{first}` 和 `{second}` 不能同时使用",
-                    "`{first}` and `{second}` cannot be combined",
-                    first = first.name(),
-                    second = second.name()
-                ),
-            )
-            .also(
-                first.key.span(),
-                text!("这里已经定义了字段", "this already defines the field"),
-            ),
-        );
-        return;
-    }
-    check_map(table, node, at, texts, faults);
 }
 
 /// Returns the likely table of a mapping that lacks the deciding key, judged by its other keys.

@@ -18,9 +18,8 @@ use crate::model::{Lang, Languages};
 use crate::source::Span;
 use crate::syntax::{Entry, Items, Node, NodeKind, quoted};
 use crate::text;
-use expected::{describe_key, wrong_kind};
-use forms::{check_by_key, check_either};
-use keys::{article, missing_keys, unknown_keys};
+use expected::{describe, describe_key, wrong_kind};
+use keys::{missing_keys, unknown_keys};
 use scalars::{Wanted, check_scalar, check_spelling};
 use std::collections::HashMap;
 use stray::{is_split, misplaced, misplaced_entry, section_of};
@@ -41,79 +40,187 @@ pub(crate) fn check_kind(
     texts: Languages,
     faults: &mut Faults,
 ) {
-    match kind {
-        Kind::Map(table) => check_map(table, node, at, texts, faults),
-        Kind::Entries { key, value, min } => {
-            check_entries(key, value, *min, node, at, texts, faults);
-        }
-        Kind::Body => check_entries(&Kind::WireKey, &FIELD_KIND, 0, node, at, texts, faults),
-        Kind::List { of, min, max } => check_list(of, (*min, *max), node, at, texts, faults),
-        Kind::Either(kinds) => check_either(kinds, node, at, texts, faults),
-        Kind::ByKey { tables, otherwise } => {
-            check_by_key(tables, otherwise, node, at, texts, faults);
-        }
-        Kind::Json => check_json(node, Wanted::Either, faults),
-        Kind::Type => check_type(node, at, faults),
-        Kind::Ref { name, .. } => check_scalar(name, node, at, faults),
-        _ => check_scalar(kind, node, at, faults),
-    }
+    Shape { texts, faults }.kind(kind, node, at);
 }
 
-fn check_map(
-    table: &'static Table,
-    node: Node<'_>,
-    at: Span,
+/// The walk through a file. `at` is the place of a value that is missing.
+struct Shape<'f> {
+    /// Languages that each text requires.
     texts: Languages,
-    faults: &mut Faults,
-) {
-    let Some(entries) = node.as_mapping() else {
-        wrong_kind(
-            &text!(
-                "“{table}”映射",
-                "a mapping with the keys of {table}",
-                table = article(table)
-            ),
-            node,
-            at,
-            faults,
-        );
-        return;
-    };
-    for entry in entries.clone() {
-        let Some(key) = table.key(entry.name()) else {
-            continue;
+    faults: &'f mut Faults,
+}
+
+impl Shape<'_> {
+    fn kind(&mut self, kind: &Kind, node: Node<'_>, at: Span) {
+        match kind {
+            Kind::Map(table) => self.map(table, node, at),
+            Kind::Entries { key, value, min } => self.entries(key, value, *min, node, at),
+            Kind::Body => self.entries(&Kind::WireKey, &FIELD_KIND, 0, node, at),
+            Kind::List { of, min, max } => self.list(of, (*min, *max), node, at),
+            Kind::Either(kinds) => self.either(kinds, node, at),
+            Kind::ByKey { tables, otherwise } => self.by_key(tables, otherwise, node, at),
+            Kind::Json => check_json(node, Wanted::Either, self.faults),
+            Kind::Type => check_type(node, at, self.faults),
+            Kind::Ref { name, .. } => check_scalar(name, node, at, self.faults),
+            _ => check_scalar(kind, node, at, self.faults),
+        }
+    }
+
+    fn map(&mut self, table: &'static Table, node: Node<'_>, at: Span) {
+        let Some(entries) = node.as_mapping() else {
+            return wrong_kind(&describe(&Kind::Map(table)), node, at, self.faults);
         };
-        if entry.value.is_null() && is_left_behind(table, node, entry) {
-            continue;
+        for entry in entries.clone() {
+            let Some(key) = table.key(entry.name()) else {
+                continue;
+            };
+            if entry.value.is_null() && is_left_behind(table, node, entry) {
+                continue;
+            }
+            if matches!(key.kind, Kind::Json) {
+                check_json(entry.value, Wanted::of(node), self.faults);
+            } else {
+                self.kind(&key.kind, entry.value, entry.key.span());
+            }
         }
-        if matches!(key.kind, Kind::Json) {
-            check_json(entry.value, Wanted::of(node), faults);
-        } else {
-            check_kind(&key.kind, entry.value, entry.key.span(), texts, faults);
+        // A misspelled key does not count as missing as well.
+        let (meant, strangers) = unknown_keys(table, node, self.faults);
+        if table.key(TEXT.zh.name).is_some() {
+            texts::check(node, self.faults);
+        }
+        let missing =
+            |name: &str| node.entry(name).is_none() && !meant.iter().any(|meant| meant == name);
+        let is_needed = |name: &str| match name {
+            _ if name == TEXT.zh.name => self.texts.require(Lang::Zh, !missing(TEXT.en.name)),
+            _ if name == TEXT.en.name => self.texts.require(Lang::En, !missing(TEXT.zh.name)),
+            _ => true,
+        };
+        let required = table.keys.iter().filter(|key| key.required);
+        let missing: Vec<&str> = required
+            .map(|key| key.name)
+            .filter(|name| is_needed(name) && missing(name))
+            .collect();
+        // Each unrecognized key may also replace one missing key.
+        if missing.len() > strangers && !node.lacks(self.faults.gaps(), at) {
+            self.faults.push(missing_keys(table, &missing, at));
         }
     }
-    // A misspelled key does not count as missing as well.
-    let (meant, strangers) = unknown_keys(table, node, faults);
-    if table.key(TEXT.zh.name).is_some() {
-        texts::check(node, faults);
+
+    fn entries(&mut self, key: &Kind, value: &Kind, min: usize, node: Node<'_>, at: Span) {
+        let Some(entries) = node.as_mapping() else {
+            let expected = text!(
+                "映射（键为{keys}）",
+                "a mapping from {keys}",
+                keys = describe_key(key).spaced()
+            );
+            return wrong_kind(&expected, node, at, self.faults);
+        };
+        let mut numbers: HashMap<i128, Span> = HashMap::new();
+        let mut count = 0;
+        let mut stray: Option<(Entry<'_>, &Table, usize)> = None;
+        for entry in entries {
+            count += 1;
+            if let Some(table) = misplaced(value, entry.value) {
+                self.faults.hide(entry.span());
+                match &mut stray {
+                    Some((_, first, more)) if section_of(first) == section_of(table) => *more += 1,
+                    _ => self
+                        .faults
+                        .extend(stray.replace((entry, table, 0)).map(misplaced_entry)),
+                }
+                continue;
+            }
+            if let Some(slip) = entry.key.slip().filter(|_| entry.value.is_null()) {
+                self.faults.push(slip);
+                continue;
+            }
+            check_key(key, entry.key, self.faults);
+            if let (Kind::Int { .. } | Kind::Scalar, Some(number)) =
+                (key.form(), scalar::int(entry.key))
+            {
+                match numbers.get(&number) {
+                    Some(first) => self.faults.push(
+                        Diagnostic::error(
+                            FaultCode::DuplicateNumber,
+                            entry.key.span(),
+                            text!(
+                                "{number} 出现两次，写法不同",
+                                "{number} occurs twice, written in two ways"
+                            ),
+                        )
+                        .also(*first, text!("首次出现在这里", "first used here")),
+                    ),
+                    None => {
+                        numbers.insert(number, entry.key.span());
+                    }
+                }
+            }
+            self.kind(value, entry.value, entry.key.span());
+        }
+        self.faults.extend(stray.map(misplaced_entry));
+        if count < min {
+            self.faults.push(Diagnostic::error(
+                FaultCode::ListLength,
+                node.span(),
+                text!(
+                    "应至少 {min} 项，实际为 {count} 项",
+                    "expected at least {min} {entries}, found {count}",
+                    entries = if min == 1 { "entry" } else { "entries" }
+                ),
+            ));
+        }
     }
-    let missing = |name: &str| {
-        !entries.clone().any(|entry| entry.name() == name)
-            && !meant.iter().any(|meant| meant == name)
-    };
-    let is_needed = |name: &str| match name {
-        _ if name == TEXT.zh.name => texts.require(Lang::Zh, !missing(TEXT.en.name)),
-        _ if name == TEXT.en.name => texts.require(Lang::En, !missing(TEXT.zh.name)),
-        _ => true,
-    };
-    let required = table.keys.iter().filter(|key| key.required);
-    let missing: Vec<&str> = required
-        .map(|key| key.name)
-        .filter(|name| is_needed(name) && missing(name))
-        .collect();
-    // Each unrecognized key may also replace one missing key.
-    if missing.len() > strangers && !node.lacks(faults.gaps(), at) {
-        faults.push(missing_keys(table, &missing, at));
+
+    fn list(&mut self, of: &Kind, (min, max): (usize, usize), node: Node<'_>, at: Span) {
+        let Some(items) = node.as_sequence() else {
+            return wrong_kind(&text!("列表", "a list"), node, at, self.faults);
+        };
+        let mut count = 0;
+        let mut rest = items.clone().peekable();
+        while let Some(item) = rest.next() {
+            count += 1;
+            if let Some(second) = rest.next_if(|second| is_split(of, item, *second)) {
+                let message = text!(
+                    "一项的键分成了两项",
+                    "the keys of one item are in two items"
+                );
+                let fault = Diagnostic::error(FaultCode::SplitItem, second.span(), message);
+                self.faults.push(
+                    fault
+                        .label(text!(
+                            "这些键属于上面一项",
+                            "these keys belong to the item above"
+                        ))
+                        .also(item.span(), text!("这一项缺少它们", "this item lacks them"))
+                        .note(text!("删除第二个 `-`", "delete the second `-`")),
+                );
+                self.faults.hide(item.span().to(second.span()));
+                continue;
+            }
+            self.kind(of, item, item.span());
+        }
+        if matches!(
+            of.form(),
+            Kind::Word(_) | Kind::Name | Kind::ConflictId | Kind::Text
+        ) {
+            check_repeated(items, self.faults);
+        }
+        if count < min || count > max {
+            let expected = if min == max {
+                text!("应为 {min} 项", "{min} items")
+            } else {
+                text!("应至少 {min} 项", "at least {min}")
+            };
+            self.faults.push(Diagnostic::error(
+                FaultCode::ListLength,
+                node.span(),
+                text!(
+                    "{expected}，实际为 {count} 项",
+                    "expected {expected}, found {count}",
+                    expected = expected
+                ),
+            ));
+        }
     }
 }
 
@@ -126,82 +233,6 @@ pub(super) fn is_left_behind(table: &Table, node: Node<'_>, entry: Entry<'_>) ->
     behind
         .nth(1)
         .is_some_and(|next| table.key(next.name()).is_none() && !next.value.is_null())
-}
-
-fn check_entries(
-    key: &Kind,
-    value: &Kind,
-    min: usize,
-    node: Node<'_>,
-    at: Span,
-    texts: Languages,
-    faults: &mut Faults,
-) {
-    let Some(entries) = node.as_mapping() else {
-        wrong_kind(
-            &text!(
-                "映射（键为{keys}）",
-                "a mapping from {keys}",
-                keys = describe_key(key).spaced()
-            ),
-            node,
-            at,
-            faults,
-        );
-        return;
-    };
-    let mut numbers: HashMap<i128, Span> = HashMap::new();
-    let mut count = 0;
-    let mut stray: Option<(Entry<'_>, &Table, usize)> = None;
-    for entry in entries {
-        count += 1;
-        if let Some(table) = misplaced(value, entry.value) {
-            faults.hide(entry.span());
-            match &mut stray {
-                Some((_, first, more)) if section_of(first) == section_of(table) => *more += 1,
-                _ => faults.extend(stray.replace((entry, table, 0)).map(misplaced_entry)),
-            }
-            continue;
-        }
-        if let Some(slip) = entry.key.slip().filter(|_| entry.value.is_null()) {
-            faults.push(slip);
-            continue;
-        }
-        check_key(key, entry.key, faults);
-        if let (Kind::Int { .. } | Kind::Scalar, Some(number)) =
-            (key.form(), scalar::int(entry.key))
-        {
-            match numbers.get(&number) {
-                Some(first) => faults.push(
-                    Diagnostic::error(
-                        FaultCode::DuplicateNumber,
-                        entry.key.span(),
-                        text!(
-                            "{number} 出现两次，写法不同",
-                            "{number} occurs twice, written in two ways"
-                        ),
-                    )
-                    .also(*first, text!("首次出现在这里", "first used here")),
-                ),
-                None => {
-                    numbers.insert(number, entry.key.span());
-                }
-            }
-        }
-        check_kind(value, entry.value, entry.key.span(), texts, faults);
-    }
-    faults.extend(stray.map(misplaced_entry));
-    if count < min {
-        faults.push(Diagnostic::error(
-            FaultCode::ListLength,
-            node.span(),
-            text!(
-                "应至少 {min} 项，实际为 {count} 项",
-                "expected at least {min} {entries}, found {count}",
-                entries = if min == 1 { "entry" } else { "entries" }
-            ),
-        ));
-    }
 }
 
 fn check_key(kind: &Kind, key: Node<'_>, faults: &mut Faults) {
@@ -230,66 +261,6 @@ fn check_wire_key(key: Node<'_>, faults: &mut Faults) {
             let fault = Diagnostic::error(FaultCode::AmbiguousWord, key.span(), message);
             faults.push(fault.fix(key.span(), quoted(text), text!("加上引号", "quote it")));
         }
-    }
-}
-
-fn check_list(
-    of: &Kind,
-    (min, max): (usize, usize),
-    node: Node<'_>,
-    at: Span,
-    texts: Languages,
-    faults: &mut Faults,
-) {
-    let Some(items) = node.as_sequence() else {
-        wrong_kind(&text!("列表", "a list"), node, at, faults);
-        return;
-    };
-    let mut count = 0;
-    let mut rest = items.clone().peekable();
-    while let Some(item) = rest.next() {
-        count += 1;
-        if let Some(second) = rest.next_if(|second| is_split(of, item, *second)) {
-            let message = text!(
-                "一项的键分成了两项",
-                "the keys of one item are in two items"
-            );
-            let fault = Diagnostic::error(FaultCode::SplitItem, second.span(), message);
-            faults.push(
-                fault
-                    .label(text!(
-                        "这些键属于上面一项",
-                        "these keys belong to the item above"
-                    ))
-                    .also(item.span(), text!("这一项缺少它们", "this item lacks them"))
-                    .note(text!("删除第二个 `-`", "delete the second `-`")),
-            );
-            faults.hide(item.span().to(second.span()));
-            continue;
-        }
-        check_kind(of, item, item.span(), texts, faults);
-    }
-    if matches!(
-        of.form(),
-        Kind::Word(_) | Kind::Name | Kind::ConflictId | Kind::Text
-    ) {
-        check_repeated(items, faults);
-    }
-    if count < min || count > max {
-        let expected = if min == max {
-            text!("应为 {min} 项", "{min} items")
-        } else {
-            text!("应至少 {min} 项", "at least {min}")
-        };
-        faults.push(Diagnostic::error(
-            FaultCode::ListLength,
-            node.span(),
-            text!(
-                "{expected}，实际为 {count} 项",
-                "expected {expected}, found {count}",
-                expected = expected
-            ),
-        ));
     }
 }
 
