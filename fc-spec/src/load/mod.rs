@@ -21,6 +21,7 @@ mod lower;
 mod partial;
 mod process;
 mod questions;
+mod remedy;
 mod resolve;
 mod section;
 mod settle;

@@ -114,7 +114,7 @@ fn check_step(field: &Field, part: Part<'_>, step: Node<'_>, path: Node<'_>, fau
             field = field.wire
         );
         let fault = Diagnostic::error(FaultCode::StepOnWrongType, path.span(), message);
-        faults.push(fault.also(part.ty, text!("类型", "the type")));
+        faults.push(fault.also_type(part.ty));
         return;
     }
     let fits = match (ty, &by) {
@@ -132,7 +132,7 @@ fn check_step(field: &Field, part: Part<'_>, step: Node<'_>, path: Node<'_>, fau
             field = field.wire
         );
         let fault = Diagnostic::error(FaultCode::StepOfNothing, node.span(), message);
-        faults.push(fault.also(part.ty, text!("类型", "the type")));
+        faults.push(fault.also_type(part.ty));
     }
 }
 
@@ -161,7 +161,7 @@ fn find<'d, 'a>(
                 "`{key}` is not an object and has no fields"
             );
             let fault = Diagnostic::error(FaultCode::UnknownField, path.span(), message);
-            faults.push(fault.also(part.ty, text!("类型", "the type")));
+            faults.push(fault.also_type(part.ty));
             return None;
         };
         holder = draft.type_named(named.name())?;

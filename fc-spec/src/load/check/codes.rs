@@ -121,10 +121,7 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
             };
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateCode, span, message)
-                    .also(
-                        code_span(earlier),
-                        text!("首次出现在这里", "first used here"),
-                    )
+                    .also_first(code_span(earlier))
                     .note(remedy),
             );
         } else {

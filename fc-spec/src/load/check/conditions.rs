@@ -72,7 +72,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 "a condition needs an enum, integer, text or bool, but `{key}` is not one"
             );
             let fault = fault(FaultCode::ConditionOnWrongType, message);
-            faults.push(fault.also(part.ty, text!("类型", "the type")));
+            faults.push(fault.also_type(part.ty));
         }
     }
 }

@@ -27,7 +27,7 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 let span = part.origin.at(FIELD.coordinates);
                 let fault = Diagnostic::error(FaultCode::CoordinatesOnWrongType, span, message);
-                faults.push(fault.also(part.ty, text!("类型", "the type")));
+                faults.push(fault.also_type(part.ty));
             }
             continue;
         };

@@ -188,7 +188,7 @@ fn misfit(draft: &Draft<'_>, occurrence: &Occurrence<'_>, name: &str) -> Option<
         (FaultCode::NotAReport, message)
     };
     let fault = Diagnostic::error(code, occurrence.node.span(), message);
-    Some(fault.also(other.origin.name(), text!("在这里声明", "declared here")))
+    Some(fault.also_declared(other.origin.name()))
 }
 
 /// Returns all things that references may name, except types.

@@ -28,7 +28,7 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
         );
         let span = part.origin.at(FIELD.refers);
         let fault = Diagnostic::error(FaultCode::RefersOnWrongType, span, message);
-        faults.push(fault.also(part.ty, text!("类型", "the type")));
+        faults.push(fault.also_type(part.ty));
     }
 }
 
@@ -48,7 +48,7 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
                 "expected `{known}`, the type of the other ids of `{entity}`"
             );
             let fault = Diagnostic::error(FaultCode::IdTypes, part.ty, message);
-            faults.push(fault.also(span, text!("首次出现在这里", "first used here")));
+            faults.push(fault.also_first(span));
         }
     }
 }

@@ -61,13 +61,11 @@ pub(super) fn check_age(draft: &Draft<'_>, faults: &mut Faults) {
             "requests carry no time, so their age is unknown"
         );
         let span = calls.origin.at(CALLS.max_age_ms);
+        let request = envelope.origin.key_at(ENVELOPE.request);
         faults.push(
             Diagnostic::error(FaultCode::AgeWithoutTime, span, message)
-                .also(
-                    envelope.origin.key_at(ENVELOPE.request),
-                    text!("请求的公共字段", "their envelope"),
-                )
-                .fix(span, "never", text!("改写为 `never`", "write `never`")),
+                .also(request, text!("请求的公共字段", "their envelope"))
+                .write("never"),
         );
     }
 }
@@ -115,7 +113,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                        .also(earlier, text!("首次出现在这里", "first used here")),
+                        .also_first(earlier),
                 );
             }
         }

@@ -95,14 +95,10 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
     };
     let last = *types.last()?;
     let fault = Diagnostic::error(FaultCode::RecursiveType, holding(last, name), message);
-    Some(
-        fault
-            .also(first.origin.name(), text!("在这里声明", "declared here"))
-            .note(text!(
-                "层数不定的值改用 `json`",
-                "use `json` for values of arbitrary depth"
-            )),
-    )
+    Some(fault.also_declared(first.origin.name()).note(text!(
+        "层数不定的值改用 `json`",
+        "use `json` for values of arbitrary depth"
+    )))
 }
 
 /// Returns the place where a type names another.

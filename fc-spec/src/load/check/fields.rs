@@ -93,7 +93,7 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                         );
                         faults.push(
                             Diagnostic::error(FaultCode::BoundsBeyondType, span, message)
-                                .also(part.ty, text!("类型", "the type")),
+                                .also_type(part.ty),
                         );
                     }
                 }
@@ -134,7 +134,7 @@ fn wrong_type(
         field = field.wire,
         expected = expected
     );
-    Diagnostic::error(code, span, message).also(ty, text!("类型", "the type"))
+    Diagnostic::error(code, span, message).also_type(ty)
 }
 
 /// Checks that `length` belongs to strings, bytes and lists, and is in order.
@@ -293,7 +293,7 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                         field = field.wire
                     ),
                 )
-                .also(part.ty, text!("类型", "the type")),
+                .also_type(part.ty),
             );
         }
     }

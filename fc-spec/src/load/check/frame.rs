@@ -39,10 +39,7 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
                     number = second.number
                 ),
             )
-            .also(
-                span(PortRole::Command),
-                text!("首次出现在这里", "first used here"),
-            ),
+            .also_first(span(PortRole::Command)),
         );
     }
 }
@@ -104,15 +101,9 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
                 "a header field with this role must be {wanted}",
                 wanted = wanted.spaced()
             );
-            let fix = text!("改写为 `{spelling}`", "write `{spelling}`");
-            faults.push(
-                Diagnostic::error(FaultCode::HeaderWidth, span, message)
-                    .also(
-                        field.origin.at(HEADER_FIELD.role),
-                        text!("角色", "the role"),
-                    )
-                    .fix(span, spelling, fix),
-            );
+            let role = field.origin.at(HEADER_FIELD.role);
+            let fault = Diagnostic::error(FaultCode::HeaderWidth, span, message);
+            faults.push(fault.also(role, text!("角色", "the role")).write(spelling));
         }
     }
 }
@@ -191,10 +182,8 @@ pub(super) fn check_each_once<R: Word>(
                 "a second {what} has the role `{name}`",
                 what = what
             );
-            faults.push(
-                Diagnostic::error(FaultCode::RoleTwice, *again, message)
-                    .also(*first, text!("首次出现在这里", "first used here")),
-            );
+            faults
+                .push(Diagnostic::error(FaultCode::RoleTwice, *again, message).also_first(*first));
         }
     }
 }
@@ -272,7 +261,7 @@ pub(super) fn check_header_names(draft: &Draft<'_>, faults: &mut Faults) {
             );
             faults.push(
                 Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                    .also(earlier, text!("首次出现在这里", "first used here"))
+                    .also_first(earlier)
                     .note(text!("给其中一个写上 `name`", "give one of them a `name`")),
             );
         }
@@ -375,11 +364,7 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
                 what = what
             );
             let span = kind.origin.at(FRAME_KIND.port);
-            faults.push(Diagnostic::error(FaultCode::KindPort, span, message).fix(
-                span,
-                word,
-                text!("改写为 `{word}`", "write `{word}`"),
-            ));
+            faults.push(Diagnostic::error(FaultCode::KindPort, span, message).write(word));
         }
     }
 }

@@ -76,6 +76,5 @@ fn shared(node: Node<'_>, word: &str, earlier: &Seen<'_>, is_same_term: bool) ->
             term = earlier.term
         )
     };
-    Diagnostic::error(FaultCode::SharedWord, node.span(), message)
-        .also(earlier.span, text!("首次出现在这里", "first used here"))
+    Diagnostic::error(FaultCode::SharedWord, node.span(), message).also_first(earlier.span)
 }

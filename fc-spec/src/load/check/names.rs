@@ -23,8 +23,7 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
                 "two files define a group `{id}`"
             );
             faults.push(
-                Diagnostic::error(FaultCode::DuplicateGroup, span, message)
-                    .also(earlier, text!("首次出现在这里", "first used here")),
+                Diagnostic::error(FaultCode::DuplicateGroup, span, message).also_first(earlier),
             );
         }
     }
@@ -58,7 +57,7 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
                         "two operations are named `{name}`"
                     ),
                 )
-                .also(*earlier, text!("首次出现在这里", "first used here")),
+                .also_first(*earlier),
             ),
             None => {
                 first.insert(name, span);
@@ -99,8 +98,7 @@ pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
                 id = table.item.id
             );
             faults.push(
-                Diagnostic::error(FaultCode::DuplicateTable, span, message)
-                    .also(earlier, text!("首次出现在这里", "first used here")),
+                Diagnostic::error(FaultCode::DuplicateTable, span, message).also_first(earlier),
             );
         }
     }
@@ -179,7 +177,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                        .also(*at, text!("首次出现在这里", "first used here"))
+                        .also_first(*at)
                         .note(text!("给其中一个写上 `name`", "give one of them a `name`")),
                 );
             } else {
@@ -249,7 +247,7 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
                     );
                     faults.push(
                         Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
-                            .also(*earlier.get(), text!("首次出现在这里", "first used here")),
+                            .also_first(*earlier.get()),
                     );
                     continue;
                 }
@@ -265,7 +263,7 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::EnvelopeKey, span, message)
-                        .also(declared.origin.name(), text!("在这里声明", "declared here")),
+                        .also_declared(declared.origin.name()),
                 );
             }
         }
@@ -319,8 +317,7 @@ pub(super) fn check_distinct<'n>(
                     )
                 };
                 faults.push(
-                    Diagnostic::error(FaultCode::DuplicateName, span, message)
-                        .also(*at, text!("首次出现在这里", "first used here")),
+                    Diagnostic::error(FaultCode::DuplicateName, span, message).also_first(*at),
                 );
             }
             None => {

@@ -55,7 +55,7 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
                     "`in` needs an enum, but `{name}` is not one"
                 );
                 let fault = Diagnostic::error(FaultCode::NotAnEnum, key.span(), message);
-                faults.push(fault.also(ty.origin.name(), text!("在这里声明", "declared here")));
+                faults.push(fault.also_declared(ty.origin.name()));
                 continue;
             }
             if !carried
@@ -67,7 +67,7 @@ pub(super) fn check_states(draft: &Draft<'_>, faults: &mut Faults) {
                     "no report and no response carries a `{name}`"
                 );
                 let fault = Diagnostic::error(FaultCode::UnseenState, key.span(), message);
-                faults.push(fault.also(ty.origin.name(), text!("在这里声明", "declared here")));
+                faults.push(fault.also_declared(ty.origin.name()));
             }
             check_values(draft, name, value, faults);
         }

@@ -173,7 +173,7 @@ fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faul
             );
             faults.push(
                 Diagnostic::error(FaultCode::NotAStruct, node.span(), message)
-                    .also(ty.origin.name(), text!("在这里声明", "declared here")),
+                    .also_declared(ty.origin.name()),
             );
         }
         Some(_) => {}
@@ -220,7 +220,7 @@ pub(super) fn check_results(draft: &Draft<'_>, faults: &mut Faults) {
                     "{code} means success, not an error"
                 );
                 Diagnostic::error(FaultCode::SuccessAsError, node.span(), message)
-                    .also(success.origin.name(), text!("在这里声明", "declared here"))
+                    .also_declared(success.origin.name())
                     .note(text!(
                         "去掉它：每个接口都可以返回成功",
                         "remove it: every operation can return success"

@@ -16,7 +16,7 @@ use crate::language::grammar::{FIELD_KIND, File, Kind, TEXT, Table};
 use crate::language::scalar;
 use crate::model::{Lang, Languages};
 use crate::source::Span;
-use crate::syntax::{Entry, Items, Node, NodeKind, quoted};
+use crate::syntax::{Entry, Items, Node, NodeKind};
 use crate::text;
 use expected::{describe, describe_key, wrong_kind};
 use keys::{missing_keys, unknown_keys};
@@ -148,7 +148,7 @@ impl Shape<'_> {
                                 "{number} occurs twice, written in two ways"
                             ),
                         )
-                        .also(*first, text!("首次出现在这里", "first used here")),
+                        .also_first(*first),
                     ),
                     None => {
                         numbers.insert(number, entry.key.span());
@@ -259,7 +259,7 @@ fn check_wire_key(key: Node<'_>, faults: &mut Faults) {
                 "YAML parsers write the number `{text}` differently"
             );
             let fault = Diagnostic::error(FaultCode::AmbiguousWord, key.span(), message);
-            faults.push(fault.fix(key.span(), quoted(text), text!("加上引号", "quote it")));
+            faults.push(fault.quote(text));
         }
     }
 }

@@ -90,7 +90,7 @@ fn misread_fault(node: Node<'_>, text: &str, wanted: Wanted) -> Option<Diagnosti
             );
             fault.fix(span, number, message)
         }
-        _ => fault.fix(span, quoted(text), text!("加上引号", "quote it")),
+        _ => fault.quote(text),
     })
 }
 
@@ -109,7 +109,7 @@ fn leading_zero(text: &str, span: Span, wanted: Wanted) -> Diagnostic {
     );
     match wanted {
         Wanted::Number => fault.fix(span, number, text!("去掉前导零", "remove the zeros")),
-        Wanted::Text => fault.fix(span, quoted(text), text!("加上引号", "quote it")),
+        Wanted::Text => fault.quote(text),
         Wanted::Either => fault
             .fix(
                 span,
@@ -264,10 +264,7 @@ fn bad_number(text: &str, span: Span) -> Diagnostic {
         text!("`{text}` 不是数值", "`{text}` is not a number"),
     );
     match number_of(text) {
-        Some(number) => {
-            let message = text!("改写为 `{number}`", "write `{number}`");
-            fault.fix(span, number, message)
-        }
+        Some(number) => fault.write(number),
         None => fault,
     }
 }
@@ -297,13 +294,7 @@ fn check_text(node: Node<'_>) -> Option<Diagnostic> {
         "expected a text, found a {taken_for}",
         taken_for = taken_for
     );
-    Some(
-        Diagnostic::error(FaultCode::WrongKind, node.span(), message).fix(
-            node.span(),
-            quoted(text),
-            text!("加上引号", "quote it"),
-        ),
-    )
+    Some(Diagnostic::error(FaultCode::WrongKind, node.span(), message).quote(text))
 }
 
 fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
@@ -315,18 +306,14 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
                 node.span(),
                 text!("`{text}` 不是整数", "`{text}` is not an integer"),
             );
-            Some(
-                match (node.as_plain(), scalar::int_text(text), number_of(text)) {
-                    (None, Some(_), _) => {
-                        fault.fix(node.span(), text, text!("去掉引号", "remove the quotes"))
-                    }
-                    (_, _, Some(number)) if scalar::int_text(&number).is_some() => {
-                        let message = text!("改写为 `{number}`", "write `{number}`");
-                        fault.fix(node.span(), number, message)
-                    }
-                    _ => fault,
-                },
-            )
+            let better = number_of(text).filter(|number| scalar::int_text(number).is_some());
+            Some(match better {
+                _ if node.as_plain().is_none() && scalar::int_text(text).is_some() => {
+                    fault.unquote(text)
+                }
+                Some(number) => fault.write(number),
+                None => fault,
+            })
         }
         Some(value) if value < min || value > max => Some(Diagnostic::error(
             FaultCode::IntegerRange,
@@ -353,15 +340,11 @@ fn bad_bool(text: &str, style: Style, span: Span) -> Diagnostic {
     };
     let fault = Diagnostic::error(FaultCode::BadBool, span, message);
     if style == Style::Quoted && matches!(text, "true" | "false") {
-        return fault.fix(span, text, text!("去掉引号", "remove the quotes"));
+        return fault.unquote(text);
     }
     match text.to_ascii_lowercase().as_str() {
-        "on" | "yes" | "y" | "1" | "true" => {
-            fault.fix(span, "true", text!("改写为 `true`", "write `true`"))
-        }
-        "off" | "no" | "n" | "0" | "false" => {
-            fault.fix(span, "false", text!("改写为 `false`", "write `false`"))
-        }
+        "on" | "yes" | "y" | "1" | "true" => fault.write("true"),
+        "off" | "no" | "n" | "0" | "false" => fault.write("false"),
         _ => fault,
     }
 }
@@ -377,10 +360,7 @@ fn bad_date(text: &str, span: Span) -> Diagnostic {
     let parts: Vec<_> = parts.map(|part| format!("{part:0>2}")).collect();
     let date = parts.join("-");
     match names::date(&date) {
-        Some(_) => {
-            let message = text!("改写为 `{date}`", "write `{date}`");
-            fault.fix(span, date, message)
-        }
+        Some(_) => fault.write(date),
         None => fault.note(text!(
             "日期写成 2024-01 或 2024-01-31",
             "dates are written 2024-01 or 2024-01-31"
@@ -400,17 +380,9 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
         .or(Some(text).filter(|text| scalar::has_leading_zero(text)))
         .and_then(|digits| u16::from_str_radix(digits, 16).ok())
         .or_else(|| text.parse().ok());
-    match digits {
-        Some(code) if style == Style::Plain => {
-            let spelling = format!("0x{code:04X}");
-            let message = text!("改写为 `{spelling}`", "write `{spelling}`");
-            fault.fix(span, spelling, message)
-        }
-        Some(code) => fault.fix(
-            span,
-            format!("0x{code:04X}"),
-            text!("去掉引号", "remove the quotes"),
-        ),
+    match digits.map(|code| format!("0x{code:04X}")) {
+        Some(spelling) if style == Style::Plain => fault.write(spelling),
+        Some(spelling) => fault.unquote(spelling),
         None => fault.note(text!(
             "功能码是 `0x` 加四位大写十六进制数字，例如 0x0A01",
             "a code is `0x` and four upper-case hex digits, such as 0x0A01"
@@ -429,8 +401,7 @@ fn bad_name(text: &str, span: Span) -> Diagnostic {
     );
     let better = names::snake(text);
     if names::is_snake(&better) {
-        let message = text!("改写为 `{better}`", "write `{better}`");
-        fault.fix(span, better, message)
+        fault.write(better)
     } else {
         fault.note(text!("名称由小写字母和数字组成，各段以 `_` 连接，以字母开头", "a name consists of lower-case letters and digits in parts joined by `_`, and starts with a letter"))
     }
@@ -447,8 +418,7 @@ fn bad_type_name(text: &str, span: Span) -> Diagnostic {
     );
     let better = names::pascal(&names::snake(text));
     if names::is_pascal(&better) {
-        let message = text!("改写为 `{better}`", "write `{better}`");
-        fault.fix(span, better, message)
+        fault.write(better)
     } else {
         fault.note(text!(
             "类型名由字母和数字组成，以大写字母开头",
