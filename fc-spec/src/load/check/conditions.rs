@@ -104,7 +104,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
         };
         list.check(
             scalar::each_value(question.entry.value),
-            |node, found| check_field(draft, asked, node, found),
+            |node| check_field(draft, asked, node),
             faults,
         );
     }

@@ -1,7 +1,7 @@
 //! Checks the envelope.
 
 use super::frame::check_each_once;
-use super::value;
+use super::value::check_type;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{CALLS, COMMON, ENVELOPE, ENVELOPE_FIELD};
 use crate::load::draft::Draft;
@@ -99,7 +99,7 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                     .also(origin.at(ENVELOPE_FIELD.role), text!("角色", "the role")),
                 );
             } else if let Some(node) = ENVELOPE_FIELD.example.of(origin.node) {
-                value::check_plain(draft, &item.ty, node, faults);
+                faults.extend(check_type(draft, &item.ty, node));
             }
             faults.extend(super::names::hidden(&item.wire, origin.name()));
             let span = origin.at(COMMON.name);

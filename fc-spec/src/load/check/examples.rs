@@ -2,7 +2,7 @@
 
 use super::fields::is_absent_required;
 use super::iter::fields;
-use super::value::{Mismatch, check_field, check_type};
+use super::value::{check_field, check_type};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TABLE};
 use crate::load::draft::Draft;
@@ -61,9 +61,7 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
         if let (Example::Given(_), Some(node)) =
             (&field.example, FIELD.example.of(part.origin.node))
         {
-            let mut found = Vec::new();
-            check_field(draft, field, node, &mut found);
-            faults.extend(found.into_iter().map(Mismatch::into_fault));
+            faults.extend(check_field(draft, field, node));
         }
     }
 }
@@ -73,19 +71,11 @@ pub(super) fn check_rows(draft: &Draft<'_>, faults: &mut Faults) {
     for table in &draft.tables {
         let row = Type::Named(TypeRef::clone(&table.item.row));
         for node in TABLE.rows.items(table.origin.node) {
-            let mut found = Vec::new();
-            check_type(draft, &row, node, &mut found);
-            for mismatch in found {
+            for fault in check_type(draft, &row, node) {
+                let code = FaultCode::RowMismatch;
                 let at = table.origin.at(TABLE.row);
-                let mismatch = Mismatch {
-                    code: FaultCode::RowMismatch,
-                    ..mismatch
-                };
-                faults.push(
-                    mismatch
-                        .into_fault()
-                        .also(at, text!("一行的结构", "the struct of a row")),
-                );
+                let fault = Diagnostic { code, ..fault };
+                faults.push(fault.also(at, text!("一行的结构", "the struct of a row")));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Checks the keys of fields.
 
 use super::iter::{fields, typed_fields};
-use super::value::{Mismatch, check_constraints, check_type};
+use super::value::{check_constraints, check_type};
 use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FIELD, TEXT};
@@ -233,7 +233,7 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
         };
         list.check(
             FIELD.only.items(part.origin.node),
-            |node, found| check_type(draft, &field.ty, node, found),
+            |node| check_type(draft, &field.ty, node),
             faults,
         );
     }
@@ -275,12 +275,9 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
         }
         if is_default(draft, &field.ty, default) {
             if let Some(node) = FIELD.default.of(part.origin.node) {
-                let mut found = Vec::new();
-                check_constraints(field, node, &Value::from(default), &mut found);
-                faults.extend(found.into_iter().map(|mismatch| {
-                    let code = FaultCode::DefaultConstraint;
-                    Mismatch { code, ..mismatch }.into_fault()
-                }));
+                let code = FaultCode::DefaultConstraint;
+                let broken = check_constraints(field, node, &Value::from(default));
+                faults.extend(broken.into_iter().map(|it| Diagnostic { code, ..it }));
             }
         } else {
             faults.push(

@@ -82,11 +82,7 @@ fn check_values(draft: &Draft<'_>, name: &str, values: Node<'_>, faults: &mut Fa
         repeated: FaultCode::DuplicateItem,
         message: text!("这个状态出现两次", "this state occurs twice"),
     };
-    list.check(
-        values.items(),
-        |node, found| check_type(draft, &ty, node, found),
-        faults,
-    );
+    list.check(values.items(), |node| check_type(draft, &ty, node), faults);
 }
 
 /// Returns the names of all types that the robot sends in reports and responses.

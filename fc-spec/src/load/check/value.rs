@@ -1,6 +1,6 @@
 //! Checks that values of the spec could occur in a message.
 
-use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
+use crate::diagnostic::{Diagnostic, FaultCode, nearest};
 use crate::language::ambiguous_scalar::misread;
 use crate::language::scalar::{self, value};
 use crate::load::draft::Draft;
@@ -8,75 +8,32 @@ use crate::model::{
     Argument, EnumType, Field, FloatKind, Judged, Number, OneOf, Scalar, StructType, Text, Type,
     TypeShape, Value, WireForm,
 };
-use crate::source::Span;
-use crate::syntax::{Node, NodeKind, quoted};
+use crate::syntax::{self, Node, NodeKind};
 use crate::text;
 
-/// A mismatch between a value and its type or field.
-pub(super) struct Mismatch {
-    /// Error code for an example.
-    pub code: FaultCode,
-    /// The smallest mismatched part.
-    pub span: Span,
-    /// The message, in one sentence.
-    pub message: Text,
-    /// The replacement and its description, if known.
-    pub fix: Option<(String, Text)>,
+/// Returns the mismatch of an example.
+fn mismatch(node: Node<'_>, message: Text) -> Diagnostic {
+    Diagnostic::error(FaultCode::ExampleType, node.span(), message)
 }
 
-impl Mismatch {
-    fn new(code: FaultCode, node: Node<'_>, message: Text) -> Self {
-        Self {
-            code,
-            span: node.span(),
-            message,
-            fix: None,
-        }
-    }
-
-    /// Returns the error for an example.
-    pub fn into_fault(self) -> Diagnostic {
-        let fault = Diagnostic::error(self.code, self.span, self.message);
-        match self.fix {
-            Some((replacement, message)) => fault.fix(self.span, replacement, message),
-            None => fault,
-        }
-    }
-}
-
-/// Reports mismatches of an example whose type has no field constraints.
-pub(super) fn check_plain(draft: &Draft<'_>, ty: &Type, node: Node<'_>, faults: &mut Faults) {
-    let mut found = Vec::new();
-    check_type(draft, ty, node, &mut found);
-    faults.extend(found.into_iter().map(Mismatch::into_fault));
-}
-
-/// Collects mismatches of a field's value, which is in wire form.
-pub(super) fn check_field(
-    draft: &Draft<'_>,
-    field: &Field,
-    node: Node<'_>,
-    found: &mut Vec<Mismatch>,
-) {
-    let is_unknown = field
-        .ty
-        .innermost()
-        .is_some_and(|ty| !draft.knows(ty.name()));
-    if is_doubtful(node) || is_unknown {
-        return;
+/// Returns the mismatches of a field's value, which is in wire form.
+pub(super) fn check_field(draft: &Draft<'_>, field: &Field, node: Node<'_>) -> Vec<Diagnostic> {
+    let named = field.ty.innermost();
+    if is_doubtful(node) || named.is_some_and(|ty| !draft.knows(ty.name())) {
+        return Vec::new();
     }
     match (field.wire_form, &field.ty) {
-        (WireForm::String, _) => return check_in_string(field, node, found),
-        (WireForm::Number, Type::Bool) => return check_bool_as_number(node, found),
+        (WireForm::String, _) => return check_in_string(field, node),
+        (WireForm::Number, Type::Bool) => return Vec::from_iter(check_bool_as_number(node)),
         // On any other type `wire: number` is the error, not the value.
         (WireForm::Number | WireForm::Plain, _) => {}
     }
-    let before = found.len();
-    check_type(draft, &field.ty, node, found);
+    let found = check_type(draft, &field.ty, node);
     // A value of the wrong type breaks every constraint; one error is enough.
-    if found.len() == before && field.details.is_some() {
-        check_constraints(field, node, &value(node), found);
+    if found.is_empty() && field.details.is_some() {
+        return check_constraints(field, node, &value(node));
     }
+    found
 }
 
 /// Returns `true` for a spelling that YAML readers disagree about. It has its own error.
@@ -86,74 +43,68 @@ fn is_doubtful(node: Node<'_>) -> bool {
 }
 
 /// Checks a field with `wire: string`, whose string holds a number or bool.
-fn check_in_string(field: &Field, node: Node<'_>, found: &mut Vec<Mismatch>) {
-    let wrong = |message: Text| Mismatch::new(FaultCode::ExampleType, node, message);
-    let Some(Value::String(text)) = Some(value(node)) else {
-        let mut mismatch = wrong(text!(
-            "应为字符串：这个字段以字符串发送",
-            "expected a string: the field is sent as one"
-        ));
-        mismatch.fix = node
-            .as_plain()
-            .map(|text| (quoted(text), text!("加上引号", "quote it")));
-        found.push(mismatch);
-        return;
+fn check_in_string(field: &Field, node: Node<'_>) -> Vec<Diagnostic> {
+    let Value::String(text) = value(node) else {
+        let fault = mismatch(
+            node,
+            text!(
+                "应为字符串：这个字段以字符串发送",
+                "expected a string: the field is sent as one"
+            ),
+        );
+        return vec![with_quotes(fault, node)];
     };
-    let inner = match (&field.ty, text.as_str()) {
+    let number = match (&field.ty, text.as_str()) {
         // A bool has no constraints.
-        (Type::Bool, "true" | "false") => return,
-        (Type::Bool, _) => {
-            found.push(wrong(text!(
-                "应为 \"true\" 或 \"false\"",
-                "expected \"true\" or \"false\""
-            )));
-            return;
-        }
+        (Type::Bool, "true" | "false") => return Vec::new(),
+        (Type::Bool, _) => Err(text!(
+            "应为 \"true\" 或 \"false\"",
+            "expected \"true\" or \"false\""
+        )),
         (_, text) => {
             let number = scalar::number_text(text).filter(|_| !text.contains('x'));
-            let Some(number) = number else {
-                found.push(wrong(text!(
+            number.map(Value::Number).ok_or_else(|| {
+                text!(
                     "字符串中应为十进制数值",
                     "expected a decimal number inside the string"
-                )));
-                return;
-            };
-            Value::Number(number)
+                )
+            })
         }
     };
-    let before = found.len();
-    check_number(&field.ty, &inner, node, found);
-    if found.len() == before {
-        check_constraints(field, node, &inner, found);
+    match number {
+        Err(message) => vec![mismatch(node, message)],
+        Ok(number) => match check_number(&field.ty, &number, node) {
+            Some(fault) => vec![fault],
+            None => check_constraints(field, node, &number),
+        },
+    }
+}
+
+/// Proposes quotes around a plain scalar.
+fn with_quotes(fault: Diagnostic, node: Node<'_>) -> Diagnostic {
+    match node.as_plain() {
+        Some(text) => fault.quote(text),
+        None => fault,
     }
 }
 
 /// Checks a field with `wire: number`: 1 is true, 0 is false. A bool has no constraints.
-fn check_bool_as_number(node: Node<'_>, found: &mut Vec<Mismatch>) {
-    let held = value(node);
-    if matches!(held, Value::Number(Number::Int(0 | 1))) {
-        return;
-    }
+fn check_bool_as_number(node: Node<'_>) -> Option<Diagnostic> {
     let message = text!(
         "应为 1 或 0：这个字段以数值发送",
         "expected 1 or 0: the field is sent as a number"
     );
-    let mut mismatch = Mismatch::new(FaultCode::ExampleType, node, message);
-    mismatch.fix = match held {
-        Value::Bool(truth) => {
-            let number = u8::from(truth).to_string();
-            let message = text!("改写为 `{number}`", "write `{number}`");
-            Some((number, message))
-        }
-        _ => None,
-    };
-    found.push(mismatch);
+    match value(node) {
+        Value::Number(Number::Int(0 | 1)) => None,
+        Value::Bool(truth) => Some(mismatch(node, message).write(u8::from(truth).to_string())),
+        _ => Some(mismatch(node, message)),
+    }
 }
 
-/// Collects mismatches between a value and a type.
-pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &mut Vec<Mismatch>) {
+/// Returns the mismatches between a value and a type.
+pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>) -> Vec<Diagnostic> {
     if is_doubtful(node) {
-        return;
+        return Vec::new();
     }
     let wrong = |expected: Text| {
         let message = text!(
@@ -162,99 +113,86 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>, found: &m
             found = describe(node),
             expected = expected.spaced()
         );
-        Mismatch::new(FaultCode::ExampleType, node, message)
+        mismatch(node, message)
     };
-    match ty {
-        Type::Json => {}
-        Type::Bool => {
-            if scalar::bool(node).is_none() {
-                found.push(wrong(text!("`true` 或 `false`", "`true` or `false`")));
-            }
-        }
+    let fault = match ty {
+        Type::Json => None,
+        Type::Bool if scalar::bool(node).is_some() => None,
+        Type::Bool => Some(wrong(text!("`true` 或 `false`", "`true` or `false`"))),
         Type::Int(_) | Type::Float(_) | Type::TimestampMs | Type::TimestampS => {
-            check_number(ty, &value(node), node, found);
+            check_number(ty, &value(node), node)
         }
-        Type::String | Type::Base64 => {
-            let Some(text) = text_of(node) else {
-                let mut mismatch = wrong(text!("文本", "text"));
-                mismatch.fix = node
-                    .as_plain()
-                    .map(|text| (quoted(text), text!("加上引号", "quote it")));
-                found.push(mismatch);
-                return;
-            };
-            if *ty == Type::Base64 && base64_len(text).is_none() {
-                found.push(wrong(text!(
-                    "base64（RFC 4648，带填充）",
-                    "base64 (RFC 4648 with padding)"
-                )));
-            }
-        }
+        Type::String | Type::Base64 => match text_of(node) {
+            None => Some(with_quotes(wrong(text!("文本", "text")), node)),
+            Some(text) if *ty == Type::Base64 && base64_len(text).is_none() => Some(wrong(text!(
+                "base64（RFC 4648，带填充）",
+                "base64 (RFC 4648 with padding)"
+            ))),
+            Some(_) => None,
+        },
         Type::Array(item) => match node.as_sequence() {
-            Some(items) => items.for_each(|node| check_type(draft, item, node, found)),
-            None => found.push(wrong(text!("列表", "a list"))),
+            Some(items) => return items.flat_map(|it| check_type(draft, item, it)).collect(),
+            None => Some(wrong(text!("列表", "a list"))),
         },
-        Type::Named(named) if !draft.knows(named.name()) => {}
+        Type::Named(named) if !draft.knows(named.name()) => None,
         Type::Named(named) => match draft.type_named(named.name()).map(|ty| &ty.def.shape) {
-            Some(TypeShape::Enum(shape)) => check_enum(named.name(), shape, node, found),
-            Some(TypeShape::Struct(shape)) => check_struct(draft, shape, node, found),
-            Some(TypeShape::OneOf(choice)) => check_one_of(draft, choice, node, found),
-            None => {}
+            Some(TypeShape::Enum(shape)) => check_enum(named.name(), shape, node),
+            Some(TypeShape::Struct(shape)) => return check_struct(draft, shape, node),
+            Some(TypeShape::OneOf(choice)) => return check_one_of(draft, choice, node),
+            None => None,
         },
-    }
+    };
+    Vec::from_iter(fault)
 }
 
-fn check_number(ty: &Type, value: &Value, node: Node<'_>, found: &mut Vec<Mismatch>) {
-    let mismatch = |message: Text| Mismatch::new(FaultCode::ExampleType, node, message);
+fn check_number(ty: &Type, value: &Value, node: Node<'_>) -> Option<Diagnostic> {
     let Value::Number(number) = value else {
         let expected = match ty {
             Type::Float(_) => text!("数值", "a number"),
             _ => text!("整数", "an integer"),
         };
-        let mut mismatch = mismatch(text!(
+        let message = text!(
             "应为{expected}，实际为{found}",
             "expected {expected}, found {found}",
             found = describe(node),
             expected = expected
-        ));
+        );
         let text = node.as_str().unwrap_or_default();
-        if node.as_plain().is_none() && scalar::number_text(text).is_some() {
-            mismatch.fix = Some((text.to_owned(), text!("去掉引号", "remove the quotes")));
-        }
-        found.push(mismatch);
-        return;
+        let is_quoted = node.as_plain().is_none() && scalar::number_text(text).is_some();
+        let fault = mismatch(node, message);
+        return Some(if is_quoted {
+            fault.unquote(text)
+        } else {
+            fault
+        });
     };
-    let range = match ty {
+    let (least, most) = match ty {
         Type::Int(kind) => kind.range(),
         Type::Float(kind) => {
-            if *kind == FloatKind::F32 && scalar::float(number).abs() > f64::from(f32::MAX) {
-                found.push(mismatch(text!(
-                    "超出 f32 的范围",
-                    "this value does not fit into f32"
-                )));
-            }
-            return;
+            let is_f32 = *kind == FloatKind::F32;
+            let is_beyond = is_f32 && scalar::float(number).abs() > f64::from(f32::MAX);
+            return is_beyond.then(|| {
+                let message = text!("超出 f32 的范围", "this value does not fit into f32");
+                mismatch(node, message)
+            });
         }
         _ => (i64::MIN.into(), i64::MAX.into()),
     };
-    match number {
-        Number::Int(value) if (range.0..=range.1).contains(value) => {}
-        Number::Int(value) => found.push(mismatch(text!(
+    let message = match number {
+        Number::Int(value) if (least..=most).contains(value) => return None,
+        Number::Int(value) => text!(
             "{value} 不在 {least}..={most} 之内",
-            "{value} is outside {least}..={most}",
-            least = range.0,
-            most = range.1
-        ))),
-        Number::Float(_) => {
-            found.push(mismatch(text!(
-                "应为整数，实际为小数",
-                "expected an integer, found a fraction"
-            )));
-        }
-    }
+            "{value} is outside {least}..={most}"
+        ),
+        Number::Float(_) => text!(
+            "应为整数，实际为小数",
+            "expected an integer, found a fraction"
+        ),
+    };
+    Some(mismatch(node, message))
 }
 
-fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mismatch>) {
+fn check_enum(name: &str, shape: &EnumType, node: Node<'_>) -> Option<Diagnostic> {
     let wire = match value(node) {
         Value::Number(number) => Scalar::Number(number),
         Value::String(text) => Scalar::String(text),
@@ -264,62 +202,53 @@ fn check_enum(name: &str, shape: &EnumType, node: Node<'_>, found: &mut Vec<Mism
                 "expected a value of `{name}`, found {found}",
                 found = describe(node)
             );
-            found.push(Mismatch::new(FaultCode::ExampleType, node, message));
-            return;
+            return Some(mismatch(node, message));
         }
     };
     if shape.values.is_empty() || shape.values.iter().any(|value| value.wire == wire) {
-        return;
+        return None;
     }
     let text = node.as_str().unwrap_or_default();
     let message = text!(
         "`{text}` 不是 `{name}` 的取值",
         "`{text}` is not a value of `{name}`"
     );
-    let mut mismatch = Mismatch::new(FaultCode::ExampleValue, node, message);
+    let fault = Diagnostic::error(FaultCode::ExampleValue, node.span(), message);
     // Often the spec has the name in code instead of the wire value.
-    let named = shape.values.iter().find(|value| value.name == text);
-    mismatch.fix = named.map(|value| {
-        let spelling = match &value.wire {
-            Scalar::Number(Number::Int(number)) => number.to_string(),
-            Scalar::String(text) => quoted(text),
-            Scalar::Bool(_) | Scalar::Number(Number::Float(_)) => text.to_owned(),
-        };
-        let message = text!(
-            "`{text}` 是它的名称；发送的值是 {spelling}",
-            "`{text}` is its name; the value sent is {spelling}"
-        );
-        (spelling, message)
-    });
-    found.push(mismatch);
+    let Some(named) = shape.values.iter().find(|value| value.name == text) else {
+        return Some(fault);
+    };
+    let spelling = match &named.wire {
+        Scalar::Number(Number::Int(number)) => number.to_string(),
+        Scalar::String(text) => syntax::quoted(text),
+        Scalar::Bool(_) | Scalar::Number(Number::Float(_)) => text.to_owned(),
+    };
+    let message = text!(
+        "`{text}` 是它的名称；发送的值是 {spelling}",
+        "`{text}` is its name; the value sent is {spelling}"
+    );
+    Some(fault.fix(node.span(), spelling, message))
 }
 
-fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>, found: &mut Vec<Mismatch>) {
+fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>) -> Vec<Diagnostic> {
     let Some(entries) = node.as_mapping() else {
         let message = text!(
             "应为对象，实际为{found}",
             "expected an object, found {found}",
             found = describe(node)
         );
-        found.push(Mismatch::new(FaultCode::ExampleType, node, message));
-        return;
+        return vec![mismatch(node, message)];
     };
+    let mut found = Vec::new();
     for entry in entries {
         let name = entry.name();
         if let Some(field) = shape.fields.iter().find(|field| field.wire == name) {
-            check_field(draft, field, entry.value, found);
+            found.extend(check_field(draft, field, entry.value));
             continue;
         }
         let message = text!("对象没有键 `{name}`", "the object has no key `{name}`");
-        let mut mismatch = Mismatch::new(FaultCode::ExampleType, entry.key, message);
         let keys = shape.fields.iter().map(|field| field.wire.as_str());
-        mismatch.fix = nearest(name, keys).map(|near| {
-            (
-                near.to_owned(),
-                text!("是否想写 `{near}`？", "did you mean `{near}`?"),
-            )
-        });
-        found.push(mismatch);
+        found.push(mismatch(entry.key, message).suggest(nearest(name, keys), None));
     }
     let required = shape.fields.iter().filter(|field| !field.optional);
     for field in required.filter(|field| node.get(&field.wire).is_none()) {
@@ -328,13 +257,14 @@ fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>, found: &m
             "the required key `{key}` is missing",
             key = field.wire
         );
-        found.push(Mismatch::new(FaultCode::ExampleType, node, message));
+        found.push(mismatch(node, message));
     }
+    found
 }
 
 /// Checks the first variant whose required keys are all present, like a decoder.
-fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut Vec<Mismatch>) {
-    let shapes = choice.variants.iter().filter_map(|variant| {
+fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>) -> Vec<Diagnostic> {
+    let mut shapes = choice.variants.iter().filter_map(|variant| {
         match &draft.type_named(variant.ty.name())?.def.shape {
             TypeShape::Struct(shape) => Some(shape),
             _ => None,
@@ -344,35 +274,27 @@ fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>, found: &mut V
         let mut required = shape.fields.iter().filter(|field| !field.optional);
         node.as_mapping().is_some() && required.all(|field| node.get(&field.wire).is_some())
     };
-    match shapes.into_iter().find(is_taken) {
-        Some(shape) => check_struct(draft, shape, node, found),
-        None => found.push(Mismatch::new(
-            FaultCode::ExampleType,
-            node,
-            text!(
-                "没有任何一个选项的全部必填键",
-                "the object lacks the required keys of every variant"
-            ),
-        )),
+    let message = text!(
+        "没有任何一个选项的全部必填键",
+        "the object lacks the required keys of every variant"
+    );
+    match shapes.find(is_taken) {
+        Some(shape) => check_struct(draft, shape, node),
+        None => vec![mismatch(node, message)],
     }
 }
 
-/// Collects the constraints of the field that a value of the correct type breaks.
-pub(super) fn check_constraints(
-    field: &Field,
-    node: Node<'_>,
-    value: &Value,
-    found: &mut Vec<Mismatch>,
-) {
+/// Returns an error for each constraint of the field that a value of the correct type breaks.
+pub(super) fn check_constraints(field: &Field, node: Node<'_>, value: &Value) -> Vec<Diagnostic> {
     let constraints = &field.details().constraints;
     let Some(value) = judged(&field.ty, value) else {
-        return;
+        return Vec::new();
     };
     // Inverted bounds admit no value, so they are not applied.
     if constraints.is_inverted() && matches!(value, Judged::Number(_)) {
-        return;
+        return Vec::new();
     }
-    found.extend(constraints.iter().filter_map(|constraint| {
+    let broken = constraints.iter().filter_map(|constraint| {
         let message = constraint.broken(&value)?;
         let code = match constraint.argument() {
             Argument::Number(_) => FaultCode::ExampleRange,
@@ -380,8 +302,9 @@ pub(super) fn check_constraints(
             Argument::Pattern(_) => FaultCode::ExamplePattern,
             Argument::Values(_) => FaultCode::ExampleValue,
         };
-        Some(Mismatch::new(code, node, message))
-    }));
+        Some(Diagnostic::error(code, node.span(), message))
+    });
+    broken.collect()
 }
 
 /// Returns the part of a value that constraints judge. `None` for a value without constraints.

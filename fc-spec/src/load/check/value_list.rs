@@ -1,6 +1,5 @@
 //! Checks lists of distinct values of one type.
 
-use super::value::Mismatch;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::scalar;
 use crate::model::Text;
@@ -25,16 +24,14 @@ impl ValueList {
     pub fn check<'t>(
         &self,
         values: impl Iterator<Item = Node<'t>>,
-        check: impl Fn(Node<'t>, &mut Vec<Mismatch>),
+        check: impl Fn(Node<'t>) -> Vec<Diagnostic>,
         faults: &mut Faults,
     ) {
         let mut earlier: Vec<Node<'_>> = Vec::new();
         for node in values {
-            let mut found = Vec::new();
-            check(node, &mut found);
-            faults.extend(found.into_iter().map(|mismatch| {
+            faults.extend(check(node).into_iter().map(|fault| {
                 let code = self.wrong;
-                let fault = Mismatch { code, ..mismatch }.into_fault();
+                let fault = Diagnostic { code, ..fault };
                 match &self.ty {
                     Some((span, text)) => fault.also(*span, text.clone()),
                     None => fault,
