@@ -1,11 +1,13 @@
 //! Checks that types are finite and small enough to expand in examples, documentation and dumps.
 
+use super::graph::walk;
 use super::unused_types::each_name;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
 use crate::model::{Text, TypeShape};
 use crate::source::Span;
 use crate::text;
+use std::collections::HashMap;
 
 /// Maximum number of fields in a fully expanded body.
 const FIELDS: u64 = 10_000;
@@ -13,57 +15,19 @@ const FIELDS: u64 = 10_000;
 /// Maximum nesting of types. The limit `limits.json_depth` on JSON is far lower.
 const DEPTH: usize = 64;
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum State {
-    New,
-    Open,
-    Done,
-}
-
-/// Checks that no type contains itself, not even in a list or an optional field. Returns `false` if one does.
-pub(super) fn check_recursion(draft: &Draft<'_>, faults: &mut Faults) -> bool {
+/// Checks that no type contains itself, not even in a list or an optional field. Returns the indexes of the types, each
+/// after the types that it contains; `None` if one contains itself.
+pub(super) fn check_recursion(draft: &Draft<'_>, faults: &mut Faults) -> Option<Vec<usize>> {
     let before = faults.errors();
-    let mut states = vec![State::New; draft.types.len()];
-    for root in 0..draft.types.len() {
-        visit(draft, root, &mut states, faults);
-    }
-    faults.errors() == before
-}
-
-/// Walks depth-first without recursion, so that a long chain of types cannot exhaust the stack.
-fn visit(draft: &Draft<'_>, root: usize, states: &mut [State], faults: &mut Faults) {
-    let mut path: Vec<(usize, std::vec::IntoIter<usize>)> = Vec::new();
-    let enter = |index: usize, states: &mut [State], path: &mut Vec<_>| {
-        if let (Some(state), Some(ty)) = (states.get_mut(index), draft.types.get(index)) {
-            *state = State::Open;
-            path.push((index, inner(draft, ty).into_iter()));
-        }
+    let edges = |index: usize| {
+        let inner = draft.types.get(index).map(|ty| inner(draft, ty));
+        let inner = inner.unwrap_or_default().into_iter();
+        inner.map(|index| (index, ())).collect()
     };
-    if states.get(root) == Some(&State::New) {
-        enter(root, states, &mut path);
-    }
-    while let Some((index, rest)) = path.last_mut() {
-        let Some(next) = rest.next() else {
-            if let Some(state) = states.get_mut(*index) {
-                *state = State::Done;
-            }
-            path.pop();
-            continue;
-        };
-        match states.get(next) {
-            Some(State::New) => enter(next, states, &mut path),
-            Some(State::Open) => {
-                let start = path.iter().position(|(index, _)| *index == next);
-                let cycle: Vec<usize> = path
-                    .iter()
-                    .skip(start.unwrap_or(0))
-                    .map(|(index, _)| *index)
-                    .collect();
-                faults.extend(recursion(draft, &cycle));
-            }
-            _ => {}
-        }
-    }
+    let order = walk(0..draft.types.len(), edges, |cycle, ()| {
+        faults.extend(recursion(draft, cycle));
+    });
+    (faults.errors() == before).then_some(order)
 }
 
 fn inner(draft: &Draft<'_>, ty: &TypeDraft<'_>) -> Vec<usize> {
@@ -120,22 +84,26 @@ fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
     part.map_or(ty.origin.name(), |part| part.ty)
 }
 
-/// Checks that a body has a limited size. Returns `false` for a larger body. Types must not contain themselves.
-pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) -> bool {
+/// Checks that a body has a limited size. Returns `false` for a larger body. In `order`, each type comes after those
+/// that it contains.
+pub(super) fn check_size(draft: &Draft<'_>, order: &[usize], faults: &mut Faults) -> bool {
     let before = faults.errors();
-    let mut sizes: Vec<Option<(u64, usize)>> = vec![None; draft.types.len()];
-    for root in 0..draft.types.len() {
-        measure(draft, root, &mut sizes);
-    }
-    for (ty, size) in draft.types.iter().zip(&sizes) {
-        let is_body = ty
-            .def
-            .body_of
-            .as_ref()
-            .is_some_and(|body| body.path.is_empty());
-        let Some((fields, depth)) = size.filter(|_| is_body) else {
+    // The number of fields and the nesting of each expanded type.
+    let mut sizes: HashMap<usize, (u64, usize)> = HashMap::new();
+    for index in order {
+        let Some(ty) = draft.types.get(*index) else {
             continue;
         };
+        let own = u64::try_from(ty.parts.len()).unwrap_or(u64::MAX);
+        let inner = inner(draft, ty).into_iter();
+        let inner = inner.filter_map(|inner| sizes.get(&inner));
+        let size = inner.fold((own, 1), |(fields, depth), (more, deep)| {
+            (fields.saturating_add(*more), depth.max(deep + 1))
+        });
+        sizes.insert(*index, size);
+    }
+    for (index, ty) in bodies(draft) {
+        let (fields, depth) = sizes.get(&index).copied().unwrap_or_default();
         let message = if fields > FIELDS {
             text!(
                 "所有类型展开后，这个消息体的字段超过 {FIELDS} 个",
@@ -149,43 +117,18 @@ pub(super) fn check_size(draft: &Draft<'_>, faults: &mut Faults) -> bool {
         } else {
             continue;
         };
-        faults.push(Diagnostic::error(
-            FaultCode::BodyTooLarge,
-            ty.origin.name(),
-            message,
-        ));
+        let span = ty.origin.name();
+        faults.push(Diagnostic::error(FaultCode::BodyTooLarge, span, message));
     }
     faults.errors() == before
 }
 
-/// Computes the number of fields and the nesting of an expanded type.
-fn measure(draft: &Draft<'_>, root: usize, sizes: &mut [Option<(u64, usize)>]) {
-    let mut open = vec![root];
-    while let Some(&index) = open.last() {
-        let (Some(None), Some(ty)) = (sizes.get(index), draft.types.get(index)) else {
-            open.pop();
-            continue;
-        };
-        let inner = inner(draft, ty);
-        let missing: Vec<usize> = inner
-            .iter()
-            .copied()
-            .filter(|inner| sizes.get(*inner) == Some(&None))
-            .collect();
-        if !missing.is_empty() {
-            open.extend(missing);
-            continue;
-        }
-        let own = u64::try_from(ty.parts.len()).unwrap_or(u64::MAX);
-        let size = inner
-            .iter()
-            .filter_map(|inner| sizes.get(*inner).copied().flatten())
-            .fold((own, 1), |(fields, depth), (more, deep)| {
-                (fields.saturating_add(more), depth.max(deep + 1))
-            });
-        if let Some(origin) = sizes.get_mut(index) {
-            *origin = Some(size);
-        }
-        open.pop();
-    }
+/// Returns the types of whole bodies, with their indexes.
+pub(super) fn bodies<'d, 'a>(
+    draft: &'d Draft<'a>,
+) -> impl Iterator<Item = (usize, &'d TypeDraft<'a>)> {
+    draft.types.iter().enumerate().filter(|(_, ty)| {
+        let body = ty.def.body_of.as_ref();
+        body.is_some_and(|body| body.path.is_empty())
+    })
 }

@@ -1,11 +1,13 @@
 //! Checks that the limits have room for the spec's own messages.
 
+use super::expand::bodies;
 use super::frame::header_len;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{FRAME, Form, Key, LIMITS};
 use crate::load::draft::{Draft, Sourced, TypeDraft};
 use crate::model::{Example, Field, Limits, Text, Type, TypeShape};
 use crate::text;
+use std::collections::HashMap;
 
 /// Checks that a frame may be at least as long as its header.
 pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
@@ -32,18 +34,18 @@ pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
 }
 
 /// Checks that each body of the spec, with its examples, fits into the limits for nesting, inflated data and
-/// uncompressed frames. Types must not contain themselves.
-pub(super) fn check_bodies(draft: &Draft<'_>, faults: &mut Faults) {
+/// uncompressed frames. In `order`, each type comes after those that it contains.
+pub(super) fn check_bodies(draft: &Draft<'_>, order: &[usize], faults: &mut Faults) {
     let Some(limits) = &draft.limits else {
         return;
     };
-    let mut known = vec![None; draft.types.len()];
-    let bodies = draft.types.iter().enumerate().filter(|(_, ty)| {
-        let body = ty.def.body_of.as_ref();
-        body.is_some_and(|body| body.path.is_empty())
-    });
-    let bodies: Vec<_> = bodies
-        .map(|(index, ty)| (extent(draft, index, &mut known), ty))
+    let mut known = HashMap::new();
+    for index in order {
+        let ty = draft.types.get(*index);
+        known.extend(ty.map(|ty| (*index, extent(draft, ty, &known))));
+    }
+    let bodies: Vec<_> = bodies(draft)
+        .filter_map(|(index, ty)| Some((known.get(&index)?, ty)))
         .collect();
     if let Some((Extent { levels, .. }, body)) = bodies.iter().max_by_key(|(it, _)| it.levels)
         && *levels > limits.item.json_depth
@@ -111,23 +113,22 @@ struct Extent {
     bytes: u64,
 }
 
-fn extent(draft: &Draft<'_>, index: usize, known: &mut [Option<Extent>]) -> Extent {
-    if let Some(Some(extent)) = known.get(index) {
-        return *extent;
-    }
-    let mut named = |name: &str| {
+/// Returns the extent of a type. `known` holds those of the types that it contains.
+fn extent(draft: &Draft<'_>, ty: &TypeDraft<'_>, known: &HashMap<usize, Extent>) -> Extent {
+    let named = |name: &str| {
         let inner = draft.type_index.get(name);
-        inner.map_or_else(Extent::default, |inner| extent(draft, *inner, known))
+        let inner = inner.and_then(|inner| known.get(inner));
+        inner.copied().unwrap_or_default()
     };
-    let extent = match draft.types.get(index).map(|ty| &ty.def.shape) {
-        Some(TypeShape::Struct(shape)) => {
+    match &ty.def.shape {
+        TypeShape::Struct(shape) => {
             // Two braces minus the comma that the last key does not have.
             let mut whole = Extent {
                 levels: 1,
                 bytes: 1,
             };
             for field in &shape.fields {
-                let inner = extent_of_field(field, &mut named);
+                let inner = extent_of_field(field, named);
                 whole.levels = whole.levels.max(inner.levels.saturating_add(1));
                 // A key under a condition may exclude another one.
                 if field.details().condition.is_none() && field.example != Example::Absent {
@@ -141,25 +142,21 @@ fn extent(draft: &Draft<'_>, index: usize, known: &mut [Option<Extent>]) -> Exte
             whole
         }
         // A choice is sent as the object of its variant.
-        Some(TypeShape::OneOf(choice)) => {
+        TypeShape::OneOf(choice) => {
             let variants = choice.variants.iter().map(|it| named(it.ty.name()));
             variants.fold(Extent::default(), |most, it| Extent {
                 levels: most.levels.max(it.levels),
                 bytes: most.bytes.max(it.bytes),
             })
         }
-        Some(TypeShape::Enum(_)) | None => Extent {
+        TypeShape::Enum(_) => Extent {
             levels: 0,
             bytes: 1,
         },
-    };
-    if let Some(known) = known.get_mut(index) {
-        *known = Some(extent);
     }
-    extent
 }
 
-fn extent_of_field(field: &Field, named: &mut impl FnMut(&str) -> Extent) -> Extent {
+fn extent_of_field(field: &Field, named: impl Fn(&str) -> Extent) -> Extent {
     let mut lists = 0;
     let mut ty = &field.ty;
     while let Type::Array(item) = ty {

@@ -19,6 +19,7 @@ mod fields;
 mod frame;
 mod glossary;
 mod governed;
+mod graph;
 mod history;
 mod iter;
 mod limits;
@@ -172,9 +173,9 @@ fn check_codes(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// Skips sizes and examples if a type contains itself, because they would be infinite.
 fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
-    if expand::check_recursion(draft, faults) {
-        if expand::check_size(draft, faults) {
-            limits::check_bodies(draft, faults);
+    if let Some(order) = expand::check_recursion(draft, faults) {
+        if expand::check_size(draft, &order, faults) {
+            limits::check_bodies(draft, &order, faults);
         }
         examples::check_values(draft, faults);
         examples::check_rows(draft, faults);

@@ -1,5 +1,6 @@
 //! Checks the preconditions of commands.
 
+use super::graph::walk;
 use super::unused_types::each_name;
 use super::value::check_type;
 use super::value_list::ValueList;
@@ -122,35 +123,20 @@ pub(super) fn check_names(draft: &Draft<'_>, faults: &mut Faults) {
 
 /// Checks that no command precedes itself, directly or through others.
 pub(super) fn check_circles(draft: &Draft<'_>, faults: &mut Faults) {
-    let after: HashMap<&str, Vec<Node<'_>>> = preconditions(draft)
-        .map(|(name, node)| (name, ACCEPTED.after.items(node).collect()))
-        .collect();
-    let mut done: HashSet<&str> = HashSet::new();
-    for (start, _) in preconditions(draft) {
-        // The current path. Each command has the number of its predecessors that were already visited.
-        let mut way: Vec<(&str, usize)> = vec![(start, 0)];
-        while let Some((name, looked)) = way.last_mut() {
-            let next = after.get(name).and_then(|before| before.get(*looked));
-            let Some(node) = next.filter(|_| !done.contains(name)) else {
-                done.insert(name);
-                way.pop();
-                continue;
-            };
-            *looked += 1;
-            let Some(next) = node.as_str() else {
-                continue;
-            };
-            match way.iter().position(|(name, _)| *name == next) {
-                Some(begin) => faults.push(circle(*node, way.iter().skip(begin))),
-                None => way.push((next, 0)),
-            }
-        }
-    }
+    let known: HashMap<&str, Node<'_>> = preconditions(draft).collect();
+    let before = |name: &str| {
+        let after = ACCEPTED.after.items(known.get(name).copied());
+        let names = after.filter_map(|node| Some((node.as_str()?, node)));
+        names.collect()
+    };
+    let commands = preconditions(draft).map(|(name, _)| name);
+    walk(commands, before, |names, node| {
+        faults.push(circle(node, names));
+    });
 }
 
-fn circle<'n>(node: Node<'_>, commands: impl Iterator<Item = &'n (&'n str, usize)>) -> Diagnostic {
-    let names: Vec<&str> = commands.map(|(name, _)| *name).collect();
-    let message = match names.as_slice() {
+fn circle(node: Node<'_>, names: &[&str]) -> Diagnostic {
+    let message = match names {
         [only] => text!(
             "`{only}` 不能先于自己",
             "`{only}` cannot come before itself"
