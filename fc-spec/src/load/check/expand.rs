@@ -1,10 +1,9 @@
 //! Checks that types are finite and small enough to expand in examples, documentation and dumps.
 
-use super::graph::walk;
-use super::unused_types::each_name;
+use super::graph::{inner_names, inner_types, walk_types};
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::load::draft::{Draft, TypeDraft};
-use crate::model::{Text, TypeShape};
+use crate::model::Text;
 use crate::source::Span;
 use crate::text;
 use std::collections::HashMap;
@@ -19,21 +18,10 @@ const DEPTH: usize = 64;
 /// after the types that it contains; `None` if one contains itself.
 pub(super) fn check_recursion(draft: &Draft<'_>, faults: &mut Faults) -> Option<Vec<usize>> {
     let before = faults.errors();
-    let edges = |index: usize| {
-        let inner = draft.types.get(index).map(|ty| inner(draft, ty));
-        let inner = inner.unwrap_or_default().into_iter();
-        inner.map(|index| (index, ())).collect()
-    };
-    let order = walk(0..draft.types.len(), edges, |cycle, ()| {
+    let order = walk_types(draft, 0..draft.types.len(), |cycle| {
         faults.extend(recursion(draft, cycle));
     });
     (faults.errors() == before).then_some(order)
-}
-
-fn inner(draft: &Draft<'_>, ty: &TypeDraft<'_>) -> Vec<usize> {
-    let mut inner = Vec::new();
-    each_name(ty, |name| inner.extend(draft.type_index.get(name).copied()));
-    inner
 }
 
 fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
@@ -67,19 +55,8 @@ fn recursion(draft: &Draft<'_>, cycle: &[usize]) -> Option<Diagnostic> {
 
 /// Returns the place where a type names another.
 fn holding(ty: &TypeDraft<'_>, name: &str) -> Span {
-    let at = match &ty.def.shape {
-        TypeShape::Struct(shape) => shape.fields.iter().position(|field| {
-            field
-                .ty
-                .innermost()
-                .is_some_and(|named| named.name() == name)
-        }),
-        TypeShape::OneOf(choice) => choice
-            .variants
-            .iter()
-            .position(|variant| variant.ty.name() == name),
-        TypeShape::Enum(_) => None,
-    };
+    let mut names = inner_names(ty).into_iter();
+    let at = names.position(|inner| inner == Some(name));
     let part = at.and_then(|at| ty.parts.get(at));
     part.map_or(ty.origin.name(), |part| part.ty)
 }
@@ -95,7 +72,7 @@ pub(super) fn check_size(draft: &Draft<'_>, order: &[usize], faults: &mut Faults
             continue;
         };
         let own = u64::try_from(ty.parts.len()).unwrap_or(u64::MAX);
-        let inner = inner(draft, ty).into_iter();
+        let inner = inner_types(draft, ty).into_iter();
         let inner = inner.filter_map(|inner| sizes.get(&inner));
         let size = inner.fold((own, 1), |(fields, depth), (more, deep)| {
             (fields.saturating_add(*more), depth.max(deep + 1))

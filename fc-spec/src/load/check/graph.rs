@@ -1,7 +1,45 @@
 //! Walks graphs, such as types that contain others.
 
+use crate::load::draft::{Draft, TypeDraft};
+use crate::model::TypeShape;
 use std::collections::HashMap;
 use std::hash::Hash;
+
+/// Visits the types that the roots contain, as indexes in the draft. Returns each after the types that it contains.
+pub(super) fn walk_types(
+    draft: &Draft<'_>,
+    roots: impl IntoIterator<Item = usize>,
+    mut report: impl FnMut(&[usize]),
+) -> Vec<usize> {
+    let edges = |index: usize| {
+        let ty = draft.types.get(index).into_iter();
+        let inner = ty.flat_map(|ty| inner_types(draft, ty));
+        inner.map(|index| (index, ())).collect()
+    };
+    walk(roots, edges, |cycle, ()| report(cycle))
+}
+
+/// Returns the indexes of the types in a type's fields or variants.
+pub(super) fn inner_types(draft: &Draft<'_>, ty: &TypeDraft<'_>) -> Vec<usize> {
+    let names = inner_names(ty).into_iter().flatten();
+    let indexes = names.filter_map(|name| draft.type_index.get(name));
+    indexes.copied().collect()
+}
+
+/// Returns the name of the type in each field or variant of a type. Built-in types have none.
+pub(super) fn inner_names<'d>(ty: &'d TypeDraft<'_>) -> Vec<Option<&'d str>> {
+    match &ty.def.shape {
+        TypeShape::Struct(shape) => {
+            let types = shape.fields.iter().map(|field| field.ty.innermost());
+            types.map(|named| Some(named?.name())).collect()
+        }
+        TypeShape::OneOf(choice) => {
+            let variants = choice.variants.iter();
+            variants.map(|variant| Some(variant.ty.name())).collect()
+        }
+        TypeShape::Enum(_) => Vec::new(),
+    }
+}
 
 /// Visits every node that the roots lead to, depth-first. Returns the nodes, each after those that it leads to.
 ///

@@ -1,7 +1,6 @@
 //! Checks the preconditions of commands.
 
-use super::graph::walk;
-use super::unused_types::each_name;
+use super::graph::{walk, walk_types};
 use super::value::check_type;
 use super::value_list::ValueList;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
@@ -95,16 +94,10 @@ fn carried_types<'d>(draft: &'d Draft<'_>) -> HashSet<&'d str> {
             Kind::Command | Kind::Stream => messages.response.ty.name(),
         })
     });
-    let mut open: Vec<&str> = bodies.collect();
-    let mut carried = HashSet::new();
-    while let Some(name) = open.pop() {
-        if carried.insert(name)
-            && let Some(ty) = draft.type_named(name)
-        {
-            each_name(ty, |name| open.push(name));
-        }
-    }
-    carried
+    let bodies = bodies.filter_map(|name| draft.type_index.get(name).copied());
+    let carried = walk_types(draft, bodies, |_| {}).into_iter();
+    let carried = carried.filter_map(|index| draft.types.get(index));
+    carried.map(|ty| ty.def.name.as_str()).collect()
 }
 
 /// Checks that the enums of states are declared.
