@@ -1,5 +1,6 @@
 //! Checks the cadence of reports.
 
+use super::iter::fields_of;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{CADENCE, REPORT, STEP};
 use crate::load::draft::{Draft, Part, TypeDraft};
@@ -146,9 +147,12 @@ fn find<'d, 'a>(
     let mut holder = draft.type_named(body)?;
     let mut keys = path.as_str()?.split('.').peekable();
     while let Some(key) = keys.next() {
-        let Some((field, part)) = field_of(draft, holder, key) else {
-            if !has_broken(draft, holder) {
-                faults.push(unknown(draft, holder, key, path));
+        let structs = structs(draft, holder).into_iter();
+        let fields: Vec<_> = structs.flat_map(fields_of).collect();
+        let mut named = fields.iter().filter(|(field, _)| field.wire == key);
+        let Some(&(field, part)) = named.next() else {
+            if fields.iter().all(|(_, part)| !part.broken) {
+                faults.push(unknown(&fields, key, path));
             }
             return None;
         };
@@ -182,37 +186,13 @@ fn structs<'d, 'a>(draft: &'d Draft<'a>, ty: &'d TypeDraft<'a>) -> Vec<&'d TypeD
     }
 }
 
-fn fields_of<'d, 'a>(ty: &'d TypeDraft<'a>) -> impl Iterator<Item = (&'d Field, Part<'a>)> {
-    let fields = match &ty.def.shape {
-        TypeShape::Struct(shape) => shape.fields.as_slice(),
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => &[],
-    };
-    fields.iter().zip(ty.parts.iter().copied())
-}
-
-fn field_of<'d, 'a>(
-    draft: &'d Draft<'a>,
-    holder: &'d TypeDraft<'a>,
-    key: &str,
-) -> Option<(&'d Field, Part<'a>)> {
-    let mut fields = structs(draft, holder).into_iter().flat_map(fields_of);
-    fields.find(|(field, _)| field.wire == key)
-}
-
-fn has_broken(draft: &Draft<'_>, holder: &TypeDraft<'_>) -> bool {
-    let mut fields = structs(draft, holder).into_iter().flat_map(fields_of);
-    fields.any(|(_, part)| part.broken)
-}
-
-fn unknown(draft: &Draft<'_>, holder: &TypeDraft<'_>, key: &str, path: Node<'_>) -> Diagnostic {
+fn unknown(fields: &[(&Field, Part<'_>)], key: &str, path: Node<'_>) -> Diagnostic {
     let message = text!("没有字段 `{key}`", "there is no field `{key}`");
     let fault = Diagnostic::error(FaultCode::UnknownField, path.span(), message);
-    let structs = structs(draft, holder);
-    let keys = structs.into_iter().flat_map(fields_of);
-    let keys: Vec<&str> = keys.map(|(field, _)| field.wire.as_str()).collect();
-    match nearest(key, keys.iter().copied()) {
+    let keys = fields.iter().map(|(field, _)| field.wire.as_str());
+    match nearest(key, keys.clone()) {
         Some(near) => fault.note(text!("是否想写 `{near}`？", "did you mean `{near}`?")),
-        None if keys.is_empty() => {
+        None if fields.is_empty() => {
             fault.note(text!("那里没有已知的字段", "no fields are known there"))
         }
         None => fault.note(text!(

@@ -9,15 +9,20 @@ pub(super) fn fields<'d, 'a>(
     draft: &'d Draft<'a>,
 ) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
     draft.types.iter().flat_map(|ty| {
-        let fields = match &ty.def.shape {
-            TypeShape::Struct(shape) => shape.fields.as_slice(),
-            TypeShape::Enum(_) | TypeShape::OneOf(_) => &[],
-        };
-        let parts = fields.iter().zip(ty.parts.iter().copied());
-        parts
-            .filter(|(_, part)| !part.broken)
-            .map(move |(field, part)| (ty, field, part))
+        let sound = fields_of(ty).filter(|(_, part)| !part.broken);
+        sound.map(move |(field, part)| (ty, field, part))
     })
+}
+
+/// Returns the fields of a struct with their places. Other types have none.
+pub(super) fn fields_of<'d, 'a>(
+    ty: &'d TypeDraft<'a>,
+) -> impl Iterator<Item = (&'d Field, Part<'a>)> {
+    let fields = match &ty.def.shape {
+        TypeShape::Struct(shape) => shape.fields.as_slice(),
+        TypeShape::Enum(_) | TypeShape::OneOf(_) => &[],
+    };
+    fields.iter().zip(ty.parts.iter().copied())
 }
 
 /// Returns the [`fields`] whose type is known. An unknown type has its own error.
