@@ -2,6 +2,7 @@
 
 use super::answer_scope::{CoveredFact, Found};
 use super::draft::{AnswerDraft, Origin, Sourced};
+use super::settle::Said;
 use crate::language::ambiguous_scalar::misread;
 use crate::language::grammar::{
     ANSWER, Answer, CHANGE, CODE, COMMAND, COMMON, CONFIRMED, EFFECT, FIELD, OPERATION, REPORT,
@@ -14,32 +15,7 @@ use crate::source::{Edits, SourceFile, Sources, Span};
 use crate::syntax::{Entry, Node, quoted};
 
 /// Placeholder for a value that only the owner knows.
-pub(super) const TO_BE_SAID: &str = "…";
-
-/// The input of the owner for one answer.
-pub(super) trait OwnerInput {
-    /// Returns the new value of the fact at `path`, as YAML; `None` keeps the current value.
-    fn value(&self, path: &str) -> Option<String>;
-
-    /// Returns the confirmation, with the owner's name and the date, as a YAML mapping.
-    fn confirmed(&self) -> String;
-}
-
-/// An empty input: every value is a placeholder.
-pub(super) struct Blank;
-
-impl OwnerInput for Blank {
-    fn value(&self, _: &str) -> Option<String> {
-        Some(TO_BE_SAID.to_owned())
-    }
-
-    fn confirmed(&self) -> String {
-        confirmation([
-            (CONFIRMED.by.name, TO_BE_SAID),
-            (CHANGE.date.name, TO_BE_SAID),
-        ])
-    }
-}
+const TO_BE_SAID: &str = "…";
 
 impl Confirmation {
     /// Returns the confirmation as a YAML mapping on one line.
@@ -73,18 +49,34 @@ pub(super) struct AnswerEditor<'s> {
     sources: &'s Sources,
     /// Languages of new texts.
     texts: Languages,
-    input: &'s dyn OwnerInput,
+    /// The owner's answer. Without one, every value is a placeholder.
+    said: Option<&'s Said>,
     pub edits: Edits,
 }
 
 impl<'s> AnswerEditor<'s> {
-    pub fn new(sources: &'s Sources, texts: Languages, input: &'s dyn OwnerInput) -> Self {
+    pub fn new(sources: &'s Sources, texts: Languages, said: Option<&'s Said>) -> Self {
         Self {
             sources,
             texts,
-            input,
+            said,
             edits: Edits::default(),
         }
+    }
+
+    /// Returns the new value of the fact at `path`, as YAML; `None` keeps the current value.
+    fn value(&self, path: &str) -> Option<String> {
+        match self.said {
+            Some(said) => said.value(path),
+            None => Some(TO_BE_SAID.to_owned()),
+        }
+    }
+
+    /// Returns the confirmation, with the owner's name and the date, as a YAML mapping.
+    fn confirmed(&self) -> String {
+        let blank = [CONFIRMED.by.name, CHANGE.date.name].map(|key| (key, TO_BE_SAID));
+        let said = self.said.map(|said| said.confirmation.to_yaml());
+        said.unwrap_or_else(|| confirmation(blank))
     }
 
     /// Returns the changed lines as a diff.
@@ -130,13 +122,13 @@ impl<'s> AnswerEditor<'s> {
                 Found::Fact(..) if !self.has_lines(answer.holder) => {}
                 Found::Fact(fact, state, kind) => self.fact(answer.holder, kind, fact, state),
                 Found::Value(node) => {
-                    if let Some(value) = self.input.value(path) {
+                    if let Some(value) = self.value(path) {
                         self.edits.replace(node.span(), value);
                     }
                 }
                 Found::Absent(node) => {
                     let key = path.rsplit('.').next().unwrap_or_default();
-                    if let Some(value) = self.input.value(path) {
+                    if let Some(value) = self.value(path) {
                         self.add(node, key, &value);
                     }
                 }
@@ -214,7 +206,7 @@ impl<'s> AnswerEditor<'s> {
             return;
         };
         let inferred = inferred.and_then(Node::as_str).map(str::to_owned);
-        let said = self.input.value(fact.name());
+        let said = self.value(fact.name());
         let said = said.filter(|said| inferred.is_none() || said != TO_BE_SAID);
         if let Some(value) = said.or(inferred) {
             self.edits.replace(node.span(), value);
@@ -234,7 +226,7 @@ impl<'s> AnswerEditor<'s> {
             return;
         };
         let span = state.key.span().to(state.value.span());
-        let value = self.input.value(fact.name());
+        let value = self.value(fact.name());
         let value = value.filter(|value| is_open || value != TO_BE_SAID);
         let Some(file) = self.file(span) else {
             return;
@@ -278,7 +270,7 @@ impl<'s> AnswerEditor<'s> {
         let Some(entry) = before.last() else {
             return;
         };
-        let confirmed = format!("{}: {}", ANSWER.confirmed.name, self.input.confirmed());
+        let confirmed = format!("{}: {}", ANSWER.confirmed.name, self.confirmed());
         if self.is_flow(answer) {
             self.edits
                 .insert_after(entry.value.span(), format!(", {confirmed}"));
@@ -310,7 +302,7 @@ impl<'s> AnswerEditor<'s> {
         let entries = [
             (ANSWER.about.name, format!("{{ {path}: {meanwhile} }}")),
             (ANSWER.r#as.name, AnswerKind::Question.name().to_owned()),
-            (ANSWER.confirmed.name, self.input.confirmed()),
+            (ANSWER.confirmed.name, self.confirmed()),
         ];
         let texts = Lang::ALL.into_iter().filter(|it| self.texts.include(*it));
         let texts = texts.map(|lang| {

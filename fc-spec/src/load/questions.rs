@@ -1,6 +1,6 @@
 //! Collects the questions for the owner, from the answers of the spec and from lost facts without an answer.
 
-use super::answer_edit::{AnswerEditor, Blank};
+use super::answer_edit::AnswerEditor;
 use super::answer_scope::{CoveredFact, Found, covered_facts, is_doubt};
 use super::draft::{AnswerDraft, Draft, Sourced};
 use crate::language::grammar::FILE;
@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 
 /// Returns all questions, the most urgent first.
 pub(super) fn questions(draft: &Draft<'_>, sources: &Sources) -> Vec<Question> {
-    let editor = || AnswerEditor::new(sources, draft.texts, &Blank);
+    let editor = || AnswerEditor::new(sources, draft.texts, None);
     let mut asked: HashSet<(&str, Fact)> = HashSet::new();
     let mut questions = Vec::new();
     let severities: HashMap<&str, Severity> = draft

@@ -1,6 +1,6 @@
 //! Writes the owner's answer to a question into the files.
 
-use super::answer_edit::{AnswerEditor, OwnerInput};
+use super::answer_edit::AnswerEditor;
 use super::answer_scope::{CoveredFact, Found, covered_facts};
 use super::draft::{Draft, Sourced};
 use crate::diagnostic::{Faults, nearest};
@@ -185,11 +185,10 @@ fn settle_in(draft: &Draft<'_>, sources: &Sources, said: &Said) -> Result<Settle
             });
         }
     }
-    let word = Spoken(said);
-    let mut editor = AnswerEditor::new(sources, draft.texts, &word);
+    let mut editor = AnswerEditor::new(sources, draft.texts, Some(said));
     let mut missing = Vec::new();
     let mut ask_for = |path: &str| {
-        if word.value(path).is_none() {
+        if said.value(path).is_none() {
             missing.push(path.to_owned());
         }
     };
@@ -279,19 +278,13 @@ fn lost<'d, 'a>(
     Some((operation, fact, operation.item.fact_state(fact)?))
 }
 
-/// The owner's answer as input for the facts of one question.
-struct Spoken<'s>(&'s Said);
-
-impl OwnerInput for Spoken<'_> {
-    /// If several values match, the one with the longest path wins.
-    fn value(&self, path: &str) -> Option<String> {
-        let fitting = self.0.values.iter().filter(|(end, _)| is_end_of(end, path));
+impl Said {
+    /// Returns the new value of the fact at `path`, as YAML; `None` keeps the current value. If several values match,
+    /// the one with the longest path wins.
+    pub(super) fn value(&self, path: &str) -> Option<String> {
+        let fitting = self.values.iter().filter(|(end, _)| is_end_of(end, path));
         let (_, value) = fitting.max_by_key(|(end, _)| end.len())?;
         Some(as_yaml(value))
-    }
-
-    fn confirmed(&self) -> String {
-        self.0.confirmation.to_yaml()
     }
 }
 
