@@ -5,6 +5,7 @@ use crate::language::grammar::{
     AT_MOST_ONCE, AnyKey, Command, FIELD_FORMS, File, GROUPED, Kind, ONCE, Report, Stream, TEXT,
     Table,
 };
+use std::collections::BTreeSet;
 
 /// Returns the errors of a mapping as a whole: errors of its keys, not of their values.
 pub(super) fn of_table(table: &Table) -> Vec<FaultCode> {
@@ -13,65 +14,48 @@ pub(super) fn of_table(table: &Table) -> Vec<FaultCode> {
     let is_form = is_one_of(&forms);
     let has_text = |key: &&AnyKey| key.name == TEXT.zh.name || key.name == TEXT.en.name;
     let mut required = table.keys.iter().filter(|key| key.required);
-    let mut found = vec![FaultCode::WrongKind, FaultCode::UnknownKey];
-    add(
-        &mut found,
-        required.clone().any(|key| !has_text(&key)),
-        &[FaultCode::MissingKey],
-    );
-    add(
-        &mut found,
-        required.any(|key| has_text(&key)),
-        &[FaultCode::MissingTranslation],
-    );
     let is_operation = is_one_of(&[Command::TABLE, Report::TABLE, Stream::TABLE]);
-    add(
-        &mut found,
-        is_operation || is_form,
-        &[FaultCode::MisplacedKey],
-    );
-    add(
-        &mut found,
-        is_form,
-        &[FaultCode::TwoForms, FaultCode::MarkerAsKey],
-    );
-    add(
-        &mut found,
-        is_one_of(&[File::TABLE]),
-        &[FaultCode::SectionMissing],
-    );
-    sorted(found)
+    sorted([
+        (true, FaultCode::WrongKind),
+        (true, FaultCode::UnknownKey),
+        (
+            required.clone().any(|key| !has_text(&key)),
+            FaultCode::MissingKey,
+        ),
+        (
+            required.any(|key| has_text(&key)),
+            FaultCode::MissingTranslation,
+        ),
+        (is_operation || is_form, FaultCode::MisplacedKey),
+        (is_form, FaultCode::TwoForms),
+        (is_form, FaultCode::MarkerAsKey),
+        (is_one_of(&[File::TABLE]), FaultCode::SectionMissing),
+    ])
 }
 
 /// Returns the errors of the value of a key. The part of a mapping with known keys lists the errors of that mapping.
 pub(super) fn of_key(table: &Table, key: &AnyKey) -> Vec<FaultCode> {
-    let mut found = key.said.faults.to_vec();
-    of_kind(&key.kind, &mut found);
-    if table.name == File::TABLE.name {
-        let once = ONCE.contains(&key.name) || AT_MOST_ONCE.contains(&key.name);
-        add(&mut found, once, &[FaultCode::SectionTwice]);
-        add(
-            &mut found,
-            GROUPED.contains(&key.name),
-            &[FaultCode::MisplacedSection, FaultCode::SectionMissing],
-        );
-    }
-    sorted(found)
+    let is_top = table.name == File::TABLE.name;
+    let is_once = ONCE.contains(&key.name) || AT_MOST_ONCE.contains(&key.name);
+    let is_grouped = is_top && GROUPED.contains(&key.name);
+    let of_section = [
+        (is_top && is_once, FaultCode::SectionTwice),
+        (is_grouped, FaultCode::MisplacedSection),
+        (is_grouped, FaultCode::SectionMissing),
+    ];
+    let own = key.said.faults.iter().map(|fault| (true, *fault));
+    sorted(own.chain(of_section).chain(of_kind(&key.kind)))
 }
 
-fn add(found: &mut Vec<FaultCode>, holds: bool, faults: &[FaultCode]) {
-    if holds {
-        found.extend(faults);
-    }
+/// Returns the errors that hold, in order.
+fn sorted(faults: impl IntoIterator<Item = (bool, FaultCode)>) -> Vec<FaultCode> {
+    let held = faults.into_iter().filter(|(holds, _)| *holds);
+    let held: BTreeSet<FaultCode> = held.map(|(_, fault)| fault).collect();
+    held.into_iter().collect()
 }
 
-fn sorted(mut found: Vec<FaultCode>) -> Vec<FaultCode> {
-    found.sort();
-    found.dedup();
-    found
-}
-
-fn of_kind(kind: &Kind, found: &mut Vec<FaultCode>) {
+/// Returns the possible errors of a kind, each with `true` if it holds for this one.
+fn of_kind(kind: &Kind) -> Vec<(bool, FaultCode)> {
     let kind = kind.form();
     let own: &[FaultCode] = match kind {
         Kind::Text | Kind::Scalar | Kind::Json => &[FaultCode::TextCut],
@@ -95,40 +79,40 @@ fn of_kind(kind: &Kind, found: &mut Vec<FaultCode>) {
         Kind::WireKey => &[],
         Kind::Body => BODY,
         // The part of the mapping lists its errors.
-        Kind::Map(_) | Kind::ByKey { .. } | Kind::Ref { .. } => return,
-        Kind::Either(kinds) => return kinds.iter().for_each(|kind| of_kind(kind, found)),
+        Kind::Map(_) | Kind::ByKey { .. } | Kind::Ref { .. } => return Vec::new(),
+        Kind::Either(kinds) => return kinds.iter().flat_map(of_kind).collect(),
         Kind::List { of, min, max } => {
-            of_kind(of, found);
             let is_of_words = matches!(
                 of.form(),
                 Kind::Word(_) | Kind::Name | Kind::ConflictId | Kind::Text
             );
-            add(found, true, &[FaultCode::WrongKind]);
-            add(found, is_of_words, &[FaultCode::DuplicateItem]);
-            add(found, matches!(of, Kind::Map(_)), &[FaultCode::SplitItem]);
-            return add(
-                found,
-                *min > 0 || *max < usize::MAX,
-                &[FaultCode::ListLength],
-            );
+            let own = [
+                (true, FaultCode::WrongKind),
+                (is_of_words, FaultCode::DuplicateItem),
+                (matches!(of, Kind::Map(_)), FaultCode::SplitItem),
+                (*min > 0 || *max < usize::MAX, FaultCode::ListLength),
+            ];
+            return of_kind(of).into_iter().chain(own).collect();
         }
         Kind::Entries { key, value, min } => {
-            of_kind(key, found);
-            of_kind(value, found);
             let is_number = matches!(key.form(), Kind::Int { .. } | Kind::Scalar);
-            add(found, true, &[FaultCode::WrongKind]);
-            add(found, is_number, &[FaultCode::DuplicateNumber]);
-            return add(found, *min > 0, &[FaultCode::ListLength]);
+            let own = [
+                (true, FaultCode::WrongKind),
+                (is_number, FaultCode::DuplicateNumber),
+                (*min > 0, FaultCode::ListLength),
+            ];
+            let inside = of_kind(key).into_iter().chain(of_kind(value));
+            return inside.chain(own).collect();
         }
     };
-    found.extend(own);
     let is_plain = matches!(kind, Kind::Bool | Kind::Code | Kind::Date);
-    add(found, !matches!(kind, Kind::Json), &[FaultCode::WrongKind]);
-    add(
-        found,
-        !is_plain,
-        &[FaultCode::AmbiguousWord, FaultCode::LeadingZero],
-    );
+    let of_scalar = [
+        (!matches!(kind, Kind::Json), FaultCode::WrongKind),
+        (!is_plain, FaultCode::AmbiguousWord),
+        (!is_plain, FaultCode::LeadingZero),
+    ];
+    let own = own.iter().map(|fault| (true, *fault));
+    own.chain(of_scalar).collect()
 }
 
 /// The errors of wire keys, and of types written directly as their value.
