@@ -2,7 +2,7 @@
 
 use super::available::Available;
 use super::coordinates::Store;
-use super::form::{Bool, Date, Entries, Form, List, Name, Scalar, Str};
+use super::form::{Bool, Date, Entries, List, Name, Scalar, Str};
 use super::kind::Kind;
 use super::refers::{AnyOperation, Ref};
 use crate::model;
@@ -140,17 +140,9 @@ grammar! {
     }
 }
 
-/// A text in both languages.
-#[derive(Debug)]
-pub(crate) enum BothLanguages {}
-
-impl Form for BothLanguages {
-    const KIND: Kind = Kind::Map(Text::TABLE);
-    type Value<'a> = model::Text;
-
-    fn read(node: Node<'_>) -> Option<model::Text> {
-        Some(both_languages(node))
-    }
+forms! {
+    /// A text in both languages.
+    BothLanguages: Kind::Map(Text::TABLE) => model::Text, |node| Some(both_languages(node));
 }
 
 /// Returns `zh` and `en` of a mapping. A missing text is a copy of the other. Both are empty if both are missing.

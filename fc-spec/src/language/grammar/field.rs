@@ -4,8 +4,8 @@ use super::common::{BothLanguages, COMMON, FieldDeprecated, TEXT};
 use super::coordinates::CoordinateSystem;
 use super::entity::Entity;
 use super::form::{
-    Body, Bool, Entries, EnumType, Form, Int, Json, List, Name, Number, OtherForm, Scalar, Str,
-    Type, TypeName, Unit, WireKey,
+    Body, Bool, Entries, EnumType, Int, Json, List, Name, Number, OtherForm, Scalar, Str, Type,
+    TypeName, Unit, WireKey,
 };
 use super::kind::{Kind, Table};
 use super::refers::Ref;
@@ -242,41 +242,22 @@ grammar! {
     }
 }
 
-/// An object of a choice, declared elsewhere or in place.
-#[derive(Debug)]
-pub(crate) enum Variant {}
-
-impl Form for Variant {
-    const KIND: Kind = Kind::ByKey {
+forms! {
+    /// An object of a choice, declared elsewhere or in place.
+    Variant: Kind::ByKey {
         tables: &[
             (NAMED_VARIANT.r#type.name, NamedVariant::TABLE),
             (OBJECT.fields.name, InlineVariant::TABLE),
         ],
         otherwise: &InlineVariant::KIND,
-    };
-    type Value<'a> = Node<'a>;
-
-    fn read(node: Node<'_>) -> Option<Node<'_>> {
-        Some(node)
-    }
-}
-
-/// A declared type.
-#[derive(Debug)]
-pub(crate) enum TypeDef {}
-
-impl Form for TypeDef {
-    const KIND: Kind = Kind::ByKey {
+    } => Node<'a>, Some;
+    /// A declared type.
+    TypeDef: Kind::ByKey {
         tables: &[
             (ENUM.r#enum.name, Enum::TABLE),
             (CHOICE.one_of.name, OneOf::TABLE),
             (OBJECT.fields.name, Struct::TABLE),
         ],
         otherwise: &Struct::KIND,
-    };
-    type Value<'a> = Node<'a>;
-
-    fn read(node: Node<'_>) -> Option<Node<'_>> {
-        Some(node)
-    }
+    } => Node<'a>, Some;
 }

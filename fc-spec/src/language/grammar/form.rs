@@ -19,23 +19,6 @@ pub(crate) trait Form {
     fn read(node: Node<'_>) -> Option<Self::Value<'_>>;
 }
 
-macro_rules! forms {
-    ($($(#[$doc:meta])* $Form:ident: $kind:expr => $Value:ty, $read:expr;)+) => { $(
-        $(#[$doc])*
-        #[derive(Debug)]
-        pub(crate) enum $Form {}
-
-        impl Form for $Form {
-            const KIND: Kind = $kind;
-            type Value<'a> = $Value;
-
-            fn read(node: Node<'_>) -> Option<$Value> {
-                $read(node)
-            }
-        }
-    )+ };
-}
-
 forms! {
     /// Any string.
     Str: Kind::Text => String, scalar::text;
@@ -155,6 +138,8 @@ forms! {
         ]),
         Kind::Text,
     ]) => HeaderType, |node: Node<'_>| node.as_str()?.parse().ok();
+    /// A body or object: wire keys and their fields.
+    Body: Kind::Body => NodeEntries<'a>, Node::as_mapping;
     /// The type of the values of an enum, as sent.
     EnumType: Kind::Word(&[
         integer(IntKind::U8),
@@ -249,19 +234,6 @@ impl<K: Form, F: Form, const MIN: usize> Form for Entries<K, F, MIN> {
         value: &F::KIND,
         min: MIN,
     };
-    type Value<'a> = NodeEntries<'a>;
-
-    fn read(node: Node<'_>) -> Option<NodeEntries<'_>> {
-        node.as_mapping()
-    }
-}
-
-/// A body or object: wire keys and their fields.
-#[derive(Debug)]
-pub(crate) enum Body {}
-
-impl Form for Body {
-    const KIND: Kind = Kind::Body;
     type Value<'a> = NodeEntries<'a>;
 
     fn read(node: Node<'_>) -> Option<NodeEntries<'_>> {

@@ -79,6 +79,25 @@ macro_rules! grammar {
     )+ };
 }
 
+/// Declares forms of values: the kind that the grammar requires, the Rust type of the value, and its reader. The type
+/// may have the lifetime `'a` of the node.
+macro_rules! forms {
+    ($($(#[$doc:meta])* $Form:ident: $kind:expr => $Value:ty, $read:expr;)+) => { $(
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub(crate) enum $Form {}
+
+        impl $crate::language::grammar::form::Form for $Form {
+            const KIND: $crate::language::grammar::kind::Kind = $kind;
+            type Value<'a> = $Value;
+
+            fn read(node: $crate::syntax::Node<'_>) -> Option<Self::Value<'_>> {
+                $read(node)
+            }
+        }
+    )+ };
+}
+
 mod available;
 mod common;
 mod coordinates;

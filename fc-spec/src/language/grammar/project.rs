@@ -1,7 +1,7 @@
 //! `fc.yaml`: the settings of a project.
 
 use super::common::TEXT;
-use super::form::{Bool, Entries, Form, Int, Json, LangName, LevelName, List, Str, TestedKind};
+use super::form::{Bool, Entries, Int, Json, LangName, LevelName, List, Str, TestedKind};
 use super::key::Key;
 use super::kind::{Doc, Kind, Said};
 use crate::syntax::Node;
@@ -102,15 +102,7 @@ grammar! {
     }
 }
 
-/// A rule of the project, or the name of a file with rules.
-#[derive(Debug)]
-pub(crate) enum RuleOrFile {}
-
-impl Form for RuleOrFile {
-    const KIND: Kind = Kind::Either(&[Kind::Text, HouseRule::KIND]);
-    type Value<'a> = Node<'a>;
-
-    fn read(node: Node<'_>) -> Option<Self::Value<'_>> {
-        Some(node)
-    }
+forms! {
+    /// A rule of the project, or the name of a file with rules.
+    RuleOrFile: Kind::Either(&[Kind::Text, HouseRule::KIND]) => Node<'a>, Some;
 }

@@ -291,47 +291,20 @@ grammar! {
     }
 }
 
-/// The ports, one key for each [`PortRole`].
-#[derive(Debug)]
-pub(crate) enum Ports {}
-
-impl Form for Ports {
-    const KIND: Kind = Kind::Map(&Table {
+forms! {
+    /// The ports, one key for each [`PortRole`].
+    Ports: Kind::Map(&Table {
         name: "ports",
         name_zh: "端口",
         doc: Doc::new("The TCP ports of the robot.", "机器人的 TCP 端口。"),
         example: include_str!("examples/Ports.yaml"),
         keys: &[
-            port(
-                PortRole::Command,
-                Doc::new("Commands and reports.", "指令和上报。"),
-            ),
+            port(PortRole::Command, Doc::new("Commands and reports.", "指令和上报。")),
             port(PortRole::Data, Doc::new("Streams.", "数据流。")),
         ],
-    });
-    type Value<'a> = Node<'a>;
-
-    fn read(node: Node<'_>) -> Option<Node<'_>> {
-        Some(node)
-    }
-}
-
-const fn port(role: PortRole, doc: Doc) -> AnyKey {
-    AnyKey {
-        name: role.name(),
-        required: true,
-        kind: Port::KIND,
-        doc,
-        said: Said::NOTHING,
-    }
-}
-
-/// `json:`, one key for each [`JsonRule`].
-#[derive(Debug)]
-pub(crate) enum Json {}
-
-impl Form for Json {
-    const KIND: Kind = Kind::Map(&Table {
+    }) => Node<'a>, Some;
+    /// `json:`, one key for each [`JsonRule`].
+    Json: Kind::Map(&Table {
         name: "JSON rules",
         name_zh: "JSON 规则",
         doc: Doc::new(
@@ -347,21 +320,24 @@ impl Form for Json {
             rule(JsonRule::Floats),
             rule(JsonRule::Strings),
         ],
-    });
-    type Value<'a> = Node<'a>;
+    }) => Node<'a>, Some;
+}
 
-    fn read(node: Node<'_>) -> Option<Node<'_>> {
-        Some(node)
-    }
+const fn port(role: PortRole, doc: Doc) -> AnyKey {
+    required(role.name(), Port::KIND, doc)
 }
 
 const fn rule(rule: JsonRule) -> AnyKey {
     let (name, en, zh) = rule.entry();
+    required(name, BothLanguages::KIND, Doc::new(en, zh))
+}
+
+const fn required(name: &'static str, kind: Kind, doc: Doc) -> AnyKey {
     AnyKey {
         name,
         required: true,
-        kind: BothLanguages::KIND,
-        doc: Doc::new(en, zh),
+        kind,
+        doc,
         said: Said::NOTHING,
     }
 }
