@@ -267,9 +267,8 @@ pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
     places.if_there(grammar::Limits::TABLE, draft.limits.as_ref());
     let transport = draft.transport.as_ref().map(|it| it.origin.node);
     let ports = TRANSPORT.ports.of(transport).map(Node::entries);
-    for Entry { key, value: node } in ports.unwrap_or_default() {
-        let name = key.as_str().unwrap_or_default();
-        places.add(grammar::Port::TABLE, None, name, Origin { key, node });
+    for port in ports.unwrap_or_default() {
+        places.add(grammar::Port::TABLE, None, port.name(), Origin::from(port));
     }
     if let Some(frame) = &draft.frame {
         places.one(grammar::Frame::TABLE, frame.origin);

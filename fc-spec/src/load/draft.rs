@@ -12,7 +12,7 @@ use crate::model::{
     ResultCode, RetiredCode, Table, Term, Text, Transport, TypeDef, Waiver,
 };
 use crate::source::Span;
-use crate::syntax::Node;
+use crate::syntax::{Entry, Node};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// The nodes of a file that define an item.
@@ -22,6 +22,12 @@ pub(crate) struct Origin<'a> {
     pub key: Node<'a>,
     /// The value of the item.
     pub node: Node<'a>,
+}
+
+impl<'a> From<Entry<'a>> for Origin<'a> {
+    fn from(Entry { key, value: node }: Entry<'a>) -> Self {
+        Self { key, node }
+    }
 }
 
 impl Origin<'_> {

@@ -94,10 +94,7 @@ fn shaped<'a>(tree: &'a Parsed<'_>, texts: Languages) -> (Vec<Section<'a>>, Faul
             }
             sections.push(Section {
                 name: key.name,
-                origin: Origin {
-                    key: entry.key,
-                    node: entry.value,
-                },
+                origin: Origin::from(entry),
                 group: group.and_then(Node::as_str),
                 references: references(key, entry.value),
                 clean: (faults.errors(), faults.hidden().len()) == before

@@ -121,10 +121,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn variant(&mut self, owner: &Owner, entry: Entry<'a>) -> (Variant, Part<'a>) {
-        let origin = Origin {
-            key: entry.key,
-            node: entry.value,
-        };
+        let origin = Origin::from(entry);
         let name = entry.name().to_owned();
         let title = text(entry.value);
         let named = NAMED_VARIANT.r#type.entry(entry.value);
@@ -161,10 +158,7 @@ impl<'a> Lowering<'a, '_> {
     fn field(&mut self, owner: &Owner, entry: Entry<'a>) -> (Field, Part<'a>) {
         let node = entry.value;
         let wire = entry.name().to_owned();
-        let origin = Origin {
-            key: entry.key,
-            node,
-        };
+        let origin = Origin::from(entry);
         let mut part = Part {
             origin,
             ty: entry.key.span(),

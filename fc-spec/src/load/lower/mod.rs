@@ -127,9 +127,9 @@ impl<'a> Lowering<'a, '_> {
             }
         }
         if let Some((_, lower)) = each {
-            for Entry { key, value: node } in origin.node.entries() {
-                self.entry = format!("{name}.{}", key.as_str().unwrap_or_default());
-                lower(self, Origin { key, node });
+            for entry in origin.node.entries() {
+                self.entry = format!("{name}.{}", entry.name());
+                lower(self, Origin::from(entry));
             }
         }
         name.clone_into(&mut self.entry);
@@ -151,9 +151,7 @@ impl<'a> Lowering<'a, '_> {
                 value: Kind::Map(table),
                 ..
             } => {
-                let things = node.entries();
-                let things = things.map(|Entry { key, value: node }| Origin { key, node });
-                let things = things.map(|origin| (*table, origin));
+                let things = node.entries().map(|entry| (*table, Origin::from(entry)));
                 self.draft.declared.extend(things);
             }
             Kind::Map(table) if table.name == Availability::NAME => {

@@ -169,10 +169,7 @@ impl<'a> Lowering<'a, '_> {
                 en: format!("{en} of `{}`", item.name),
             }),
         };
-        let body_place = entry.map_or(*origin, |entry| Origin {
-            key: entry.key,
-            node: entry.value,
-        });
+        let body_place = entry.map_or(*origin, Origin::from);
         let fields = entry.map(|entry| entry.value.entries()).unwrap_or_default();
         let shape = StructType::new(state, None);
         let ty = self.made_struct(&owner, body_place, fields, title, shape);

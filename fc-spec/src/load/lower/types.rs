@@ -100,10 +100,7 @@ fn enum_value(repr: Option<EnumRepr>, entry: Entry<'_>) -> (EnumValue, Part<'_>)
         available: available(entry.value),
     };
     let part = Part {
-        origin: Origin {
-            key: entry.key,
-            node: entry.value,
-        },
+        origin: Origin::from(entry),
         ty: entry.key.span(),
         broken: repr.is_none(),
         borrows_text: false,

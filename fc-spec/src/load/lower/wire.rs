@@ -19,13 +19,6 @@ use crate::names;
 use crate::syntax::{Entries, Node};
 use crate::vocabulary::Word as _;
 
-fn places(entries: Entries<'_>) -> impl Iterator<Item = Origin<'_>> {
-    entries.map(|entry| Origin {
-        key: entry.key,
-        node: entry.value,
-    })
-}
-
 /// Returns the name in code of a wire name.
 pub(super) fn code_name(wire: &str, node: Node<'_>) -> String {
     COMMON.name.read(node).unwrap_or_else(|| names::snake(wire))
@@ -61,18 +54,12 @@ impl<'a> Lowering<'a, '_> {
 
     pub(super) fn transport(&mut self, origin: Origin<'a>) {
         let node = origin.node;
-        let ports = places(
-            TRANSPORT
-                .ports
-                .of(node)
-                .map(Node::entries)
-                .unwrap_or_default(),
-        )
-        .filter_map(|port| {
+        let ports = TRANSPORT.ports.of(node).map(Node::entries);
+        let ports = ports.into_iter().flatten().filter_map(|port| {
             Some(Port {
                 role: PortRole::named(port.key.as_str()?)?,
-                number: PORT.number.get(port.node),
-                text: text(port.node),
+                number: PORT.number.get(port.value),
+                text: text(port.value),
             })
         });
         if let Ok(ports) = Ports::try_from(ports.collect::<Vec<_>>()) {
@@ -88,17 +75,15 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn frame(&mut self, origin: Origin<'a>) {
         let node = origin.node;
         let heads = FRAME.heads.of(node);
-        let mut kinds: Vec<_> = places(FRAME.kinds.get(node))
-            .filter_map(frame_kind)
-            .collect();
+        let kinds = FRAME.kinds.get(node).map(Origin::from);
+        let mut kinds: Vec<_> = kinds.filter_map(frame_kind).collect();
         kinds.sort_by_key(|kind| kind.item.value);
-        let mut encodings: Vec<_> = places(FRAME.encodings.get(node))
-            .filter_map(encoding)
-            .collect();
+        let encodings = FRAME.encodings.get(node).map(Origin::from);
+        let mut encodings: Vec<_> = encodings.filter_map(encoding).collect();
         encodings.sort_by_key(|encoding| encoding.item.value);
         let mut header = Vec::new();
         let mut offset = 0;
-        for origin in places(FRAME.header.get(node)) {
+        for origin in FRAME.header.get(node).map(Origin::from) {
             let field = self.header_field(origin, offset);
             offset += field.item.ty.size();
             header.push(field);
@@ -147,10 +132,9 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn envelope(&mut self, origin: Origin<'a>) {
-        let mut side = |fields| {
-            places(fields)
-                .filter_map(|field| self.envelope_field(field))
-                .collect()
+        let mut side = |fields: Entries<'a>| {
+            let fields = fields.map(Origin::from);
+            fields.filter_map(|it| self.envelope_field(it)).collect()
         };
         let envelope = EnvelopeDraft {
             origin,
@@ -180,7 +164,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn results(&mut self, origin: Origin<'a>) {
-        for origin in places(origin.node.entries()) {
+        for origin in origin.node.entries().map(Origin::from) {
             let node = origin.node;
             let Some(code) = scalar::small_int(origin.key) else {
                 continue;
