@@ -9,7 +9,8 @@ use crate::language::grammar::{self, Form, Key};
 use crate::model::{
     Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
     FrameKind, Group, HeaderField, Languages, Limits, MissingSection, Operation, Partial, Protocol,
-    ResultCode, RetiredCode, Table, Term, Text, Transport, TypeDef, Waiver,
+    ResultCode, RetiredCode, StructType, Table, Term, Text, Transport, Type, TypeDef, TypeShape,
+    Waiver,
 };
 use crate::source::Span;
 use crate::syntax::{Entry, Node};
@@ -191,6 +192,22 @@ impl<'a> Draft<'a> {
         let references = self.references.iter();
         let references = references.filter(move |it| it.names() == kinds);
         references.filter_map(|it| Some((it, it.node.as_str()?)))
+    }
+
+    /// Returns the shape of a named type; `None` for a built-in or unknown type.
+    pub fn shape(&self, ty: &Type) -> Option<&TypeShape> {
+        match ty {
+            Type::Named(named) => Some(&self.type_named(named.name())?.def.shape),
+            _ => None,
+        }
+    }
+
+    /// Returns the struct of this name.
+    pub fn struct_named(&self, name: &str) -> Option<&StructType> {
+        match &self.type_named(name)?.def.shape {
+            TypeShape::Struct(shape) => Some(shape),
+            TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
+        }
     }
 
     /// Returns the type of this name.

@@ -4,7 +4,6 @@ use super::draft::Draft;
 use crate::language::grammar::SET_OFF;
 use crate::model::{
     self, Direction, Exchange, Field, KeyPath, Operation, SetOff, StructType, Tie, TypeRef,
-    TypeShape,
 };
 use crate::syntax::Node;
 
@@ -45,10 +44,7 @@ pub(super) fn body<'d>(
     side: Direction,
 ) -> Option<&'d StructType> {
     let named = &operation.messages()?.body(side).ty;
-    match &draft.type_named(named.name())?.def.shape {
-        TypeShape::Struct(shape) => Some(shape),
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-    }
+    draft.struct_named(named.name())
 }
 
 /// Returns the fields along the keys, starting at a body.

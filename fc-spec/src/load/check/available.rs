@@ -199,11 +199,7 @@ pub(super) fn check_left(draft: &Draft<'_>, faults: &mut Faults) {
             }
         }
         for (_, field, part) in fields(draft) {
-            let ty = field
-                .ty
-                .innermost()
-                .and_then(|ty| draft.type_named(ty.name()));
-            let Some(TypeShape::Enum(shape)) = ty.map(|ty| &ty.def.shape) else {
+            let Some(TypeShape::Enum(shape)) = draft.shape(field.ty.item()) else {
                 continue;
             };
             let knows = |wire: &Scalar| {

@@ -1,5 +1,6 @@
 //! Checks fields that are present, or valid, only for certain values of other fields of the object.
 
+use super::fields::is_enum;
 use super::iter::fields;
 use super::value::check_field;
 use super::value_list::ValueList;
@@ -156,11 +157,7 @@ fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
 fn has_single_values(draft: &Draft<'_>, ty: &Type) -> bool {
     match ty {
         Type::Bool | Type::Int(_) | Type::String => true,
-        Type::Named(named) if !draft.knows(named.name()) => true,
-        Type::Named(named) => {
-            let shape = draft.type_named(named.name()).map(|ty| &ty.def.shape);
-            matches!(shape, None | Some(TypeShape::Enum(_)))
-        }
+        Type::Named(named) => !draft.knows(named.name()) || is_enum(draft, ty),
         _ => false,
     }
 }

@@ -106,10 +106,7 @@ fn has_length<'d>(
 }
 
 fn structure<'d>(draft: &'d Draft<'_>, ty: &Type) -> Option<&'d StructType> {
-    let Type::Named(named) = ty else {
-        return None;
-    };
-    match &draft.type_named(named.name())?.def.shape {
+    match draft.shape(ty)? {
         TypeShape::Struct(shape) => Some(shape),
         TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
     }

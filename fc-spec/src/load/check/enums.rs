@@ -3,8 +3,8 @@
 use super::names::check_distinct;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{CHOICE, ENUM, ENUM_VALUE};
-use crate::load::draft::{Draft, TypeDraft};
-use crate::model::{EnumRepr, Number, Scalar, TypeShape};
+use crate::load::draft::Draft;
+use crate::model::{EnumRepr, Number, Scalar, StructType, TypeShape};
 use crate::text;
 use std::collections::HashSet;
 
@@ -87,9 +87,10 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let mut earlier: Vec<(&str, HashSet<&str>, crate::source::Span)> = Vec::new();
         for (variant, part) in choice.variants.iter().zip(&ty.parts) {
-            let Some(required) = draft.type_named(variant.ty.name()).and_then(required_keys) else {
+            let Some(shape) = draft.struct_named(variant.ty.name()) else {
                 continue;
             };
+            let required = required_keys(shape);
             let span = part.origin.name();
             let hiding = earlier
                 .iter()
@@ -114,10 +115,7 @@ pub(super) fn check_variants(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-fn required_keys<'d>(ty: &'d TypeDraft<'_>) -> Option<HashSet<&'d str>> {
-    let TypeShape::Struct(shape) = &ty.def.shape else {
-        return None;
-    };
+fn required_keys(shape: &StructType) -> HashSet<&str> {
     let required = shape.fields.iter().filter(|field| !field.optional);
-    Some(required.map(|field| field.wire.as_str()).collect())
+    required.map(|field| field.wire.as_str()).collect()
 }

@@ -240,10 +240,9 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
 }
 
 /// Returns `true` for an enum. Also `true` for an unknown type, which has its own error.
-fn is_enum(draft: &Draft<'_>, ty: &Type) -> bool {
-    let Type::Named(named) = ty else { return false };
-    let shape = draft.type_named(named.name()).map(|ty| &ty.def.shape);
-    matches!(shape, None | Some(TypeShape::Enum(_)))
+pub(super) fn is_enum(draft: &Draft<'_>, ty: &Type) -> bool {
+    let is_named = matches!(ty, Type::Named(_));
+    is_named && matches!(draft.shape(ty), None | Some(TypeShape::Enum(_)))
 }
 
 /// Checks that `default` belongs to optional fields and matches their type and bounds.
@@ -306,10 +305,7 @@ fn is_default(draft: &Draft<'_>, ty: &Type, default: &Scalar) -> bool {
             let (least, most) = kind.range();
             (least..=most).contains(value)
         }
-        (Type::Named(named), default) => match draft
-            .type_named(named.name())
-            .map(|ty| &ty.def.shape)
-        {
+        (Type::Named(_), default) => match draft.shape(ty) {
             Some(TypeShape::Enum(shape)) => shape.values.iter().any(|value| value.wire == *default),
             Some(_) => false,
             // An unknown type has its own error.

@@ -144,16 +144,9 @@ pub(super) fn check_state(draft: &Draft<'_>, faults: &mut Faults) {
         let said = REPORT.state_in.of(report.origin.node);
         if let (Some(said), Some(keys)) = (said, state) {
             let found = end(draft, report, Direction::Request, keys, said.span(), faults);
-            let named = found.map(|ty| match ty {
-                Type::Named(named) => draft.type_named(named.name()),
-                _ => None,
-            });
-            let Some(ty) = named else { continue };
-            let is_process = ty.is_some_and(|ty| match &ty.def.shape {
-                TypeShape::Enum(shape) => shape.is_process(),
-                TypeShape::Struct(_) | TypeShape::OneOf(_) => false,
-            });
-            if !is_process {
+            let Some(ty) = found else { continue };
+            let shape = draft.shape(ty);
+            if !matches!(shape, Some(TypeShape::Enum(shape)) if shape.is_process()) {
                 let message = text!(
                     "`{keys}` 不是过程的状态",
                     "`{keys}` is not the state of a process",

@@ -135,7 +135,7 @@ pub(super) fn check_type(draft: &Draft<'_>, ty: &Type, node: Node<'_>) -> Vec<Di
             None => Some(wrong(text!("列表", "a list"))),
         },
         Type::Named(named) if !draft.knows(named.name()) => None,
-        Type::Named(named) => match draft.type_named(named.name()).map(|ty| &ty.def.shape) {
+        Type::Named(named) => match draft.shape(ty) {
             Some(TypeShape::Enum(shape)) => check_enum(named.name(), shape, node),
             Some(TypeShape::Struct(shape)) => return check_struct(draft, shape, node),
             Some(TypeShape::OneOf(choice)) => return check_one_of(draft, choice, node),
@@ -264,12 +264,8 @@ fn check_struct(draft: &Draft<'_>, shape: &StructType, node: Node<'_>) -> Vec<Di
 
 /// Checks the first variant whose required keys are all present, like a decoder.
 fn check_one_of(draft: &Draft<'_>, choice: &OneOf, node: Node<'_>) -> Vec<Diagnostic> {
-    let mut shapes = choice.variants.iter().filter_map(|variant| {
-        match &draft.type_named(variant.ty.name())?.def.shape {
-            TypeShape::Struct(shape) => Some(shape),
-            _ => None,
-        }
-    });
+    let variants = choice.variants.iter();
+    let mut shapes = variants.filter_map(|variant| draft.struct_named(variant.ty.name()));
     let is_taken = |shape: &&StructType| {
         let mut required = shape.fields.iter().filter(|field| !field.optional);
         node.as_mapping().is_some() && required.all(|field| node.get(&field.wire).is_some())
