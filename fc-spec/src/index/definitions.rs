@@ -225,27 +225,20 @@ impl Collector {
         }
     }
 
-    /// Adds things with the names of their keys.
-    fn keyed<T>(&mut self, kind: &'static Table, owner: Option<&str>, placed: &[Sourced<'_, T>]) {
-        for Sourced { origin, .. } in placed {
-            self.add(
-                kind,
-                owner,
-                origin.key.as_str().unwrap_or_default(),
-                *origin,
-            );
-        }
+    /// Adds a thing with the name of its key.
+    fn keyed(&mut self, kind: &'static Table, owner: Option<&str>, origin: Origin<'_>) {
+        self.add(kind, owner, origin.key.as_str().unwrap_or_default(), origin);
     }
 
     /// Adds things with other names than their keys.
-    fn named_by<T>(
+    fn named_by<T, N: ToString>(
         &mut self,
         kind: &'static Table,
         placed: &[Sourced<'_, T>],
-        name: impl Fn(usize, &T) -> String,
+        name: impl Fn(&T) -> N,
     ) {
-        for (at, Sourced { item, origin }) in placed.iter().enumerate() {
-            self.add(kind, None, &name(at + 1, item), *origin);
+        for Sourced { item, origin } in placed {
+            self.add(kind, None, &name(item).to_string(), *origin);
         }
     }
 }
@@ -268,17 +261,15 @@ pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
     let transport = draft.transport.as_ref().map(|it| it.origin.node);
     let ports = TRANSPORT.ports.of(transport).map(Node::entries);
     for port in ports.unwrap_or_default() {
-        places.add(grammar::Port::TABLE, None, port.name(), Origin::from(port));
+        places.keyed(grammar::Port::TABLE, None, Origin::from(port));
     }
     if let Some(frame) = &draft.frame {
         places.one(grammar::Frame::TABLE, frame.origin);
-        places.keyed(grammar::HeaderField::TABLE, None, &frame.header);
-        places.named_by(grammar::FrameKind::TABLE, &frame.kinds, |_, it| {
-            it.value.to_string()
-        });
-        places.named_by(grammar::Encoding::TABLE, &frame.encodings, |_, it| {
-            it.value.to_string()
-        });
+        for field in &frame.header {
+            places.keyed(grammar::HeaderField::TABLE, None, field.origin);
+        }
+        places.named_by(grammar::FrameKind::TABLE, &frame.kinds, |it| it.value);
+        places.named_by(grammar::Encoding::TABLE, &frame.encodings, |it| it.value);
     }
     if let Some(envelope) = &draft.envelope {
         places.one(grammar::Envelope::TABLE, envelope.origin);
@@ -286,19 +277,23 @@ pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
             (Direction::Request, &envelope.request),
             (Direction::Response, &envelope.response),
         ] {
-            places.keyed(grammar::EnvelopeField::TABLE, Some(side.name()), fields);
+            for field in fields {
+                places.keyed(
+                    grammar::EnvelopeField::TABLE,
+                    Some(side.name()),
+                    field.origin,
+                );
+            }
         }
     }
-    places.named_by(grammar::ResultCode::TABLE, &draft.results, |_, it| {
-        it.code.to_string()
-    });
-    places.named_by(grammar::Range::TABLE, &draft.ranges, |_, it| {
+    places.named_by(grammar::ResultCode::TABLE, &draft.results, |it| it.code);
+    places.named_by(grammar::Range::TABLE, &draft.ranges, |it| {
         it.first_spelling.clone()
     });
-    places.named_by(grammar::Retired::TABLE, &draft.retired, |_, it| {
+    places.named_by(grammar::Retired::TABLE, &draft.retired, |it| {
         it.spelling.clone()
     });
-    places.named_by(grammar::Group::TABLE, &draft.groups, |_, it| it.id.clone());
+    places.named_by(grammar::Group::TABLE, &draft.groups, |it| it.id.clone());
     for Sourced { item, origin } in &draft.operations {
         let kind = match item.kind() {
             Kind::Command => grammar::Command::TABLE,
@@ -310,16 +305,13 @@ pub(super) fn of_file(draft: &Draft<'_>) -> FileDefinitions {
     types(&mut places, draft);
     for (table, origin) in &draft.declared {
         if !AnyOperation::KINDS.contains(&table.name) {
-            let name = origin.key.as_str().unwrap_or_default();
-            places.add(table, None, name, *origin);
+            places.keyed(table, None, *origin);
         }
     }
-    places.named_by(grammar::Section::TABLE, &draft.sections, |_, it| {
-        it.section.to_string()
-    });
-    places.named_by(grammar::Change::TABLE, &draft.changes, |at, _| {
-        at.to_string()
-    });
+    places.named_by(grammar::Section::TABLE, &draft.sections, |it| it.section);
+    for (at, change) in (1_usize..).zip(&draft.changes) {
+        places.add(grammar::Change::TABLE, None, &at.to_string(), change.origin);
+    }
     let answers = draft.answers.iter();
     FileDefinitions {
         all: places.0.into_iter().collect(),
