@@ -7,7 +7,7 @@ use crate::language::grammar::{
 };
 use crate::language::scalar;
 use crate::load::draft::{Draft, Origin};
-use crate::model::{ResultRole, Text, Type, TypeShape};
+use crate::model::{ResultRole, Text, Type, TypeRef, TypeShape};
 use crate::source::Span;
 use crate::syntax::{Node, Style};
 use crate::text;
@@ -19,44 +19,35 @@ const SUGGESTIONS: usize = 100;
 
 /// Checks that every named type of a field exists.
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
-    let fields = fields(draft).map(|(_, field, part)| (field.ty.clone(), part.origin));
+    let fields = fields(draft).map(|(_, field, part)| (&field.ty, part.origin));
     let envelope = draft.envelope.iter();
     let envelope = envelope.flat_map(|envelope| envelope.request.iter().chain(&envelope.response));
-    let envelope = envelope.map(|field| (field.item.ty.clone(), field.origin));
+    let envelope = envelope.map(|field| (&field.item.ty, field.origin));
     // An unknown name in several fields counts as one error, because one declaration or one rename fixes them all.
-    let mut found: Vec<(String, Vec<Node<'_>>)> = Vec::new();
-    let mut known: HashMap<String, usize> = HashMap::new();
+    let mut order: Vec<&str> = Vec::new();
+    let mut found: HashMap<&str, Vec<Node<'_>>> = HashMap::new();
     for (ty, origin) in fields.chain(envelope) {
-        let Some(name) = unknown(draft, &ty) else {
+        let name = ty.innermost().map(TypeRef::name);
+        let Some(name) = name.filter(|name| draft.type_named(name).is_none()) else {
             continue;
         };
-        let node = innermost(origin);
-        if let Some((_, nodes)) = known.get(name).and_then(|at| found.get_mut(*at)) {
-            nodes.push(node);
-        } else {
-            known.insert(name.to_owned(), found.len());
-            found.push((name.to_owned(), vec![node]));
+        let nodes = found.entry(name).or_default();
+        if nodes.is_empty() {
+            order.push(name);
         }
+        nodes.push(innermost(origin));
     }
-    for (name, nodes) in found {
-        let mut nodes = nodes.into_iter();
+    for name in order {
+        let mut nodes = found.remove(name).into_iter().flatten();
         let Some(first) = nodes.next() else { continue };
-        let fault = unknown_type(draft, &name, first, faults);
+        let fault = unknown_type(draft, name, first, faults);
         faults.push(nodes.fold(fault, |fault, node| {
             let fault = fault.also(node.span(), text!("这里也用到", "also used here"));
-            match spelled(node, &name) {
+            match spelled(node, name) {
                 Some(span) => fault.fix_also(span),
                 None => fault,
             }
         }));
-    }
-}
-
-fn unknown<'t>(draft: &Draft<'_>, ty: &'t Type) -> Option<&'t str> {
-    match ty {
-        Type::Named(named) if draft.type_named(named.name()).is_none() => Some(named.name()),
-        Type::Array(item) => unknown(draft, item),
-        _ => None,
     }
 }
 
@@ -99,24 +90,16 @@ fn unknown_type(draft: &Draft<'_>, name: &str, node: Node<'_>, faults: &Faults) 
 
 /// Returns the span of a name at the start of a scalar, unless the scalar has escapes.
 fn spelled(node: Node<'_>, name: &str) -> Option<Span> {
-    let start = at_start(node, name)?;
-    Some(Span::new(node.span().file, start, start + name.len()))
-}
-
-/// Returns the byte offset of a name at the start of a scalar, unless the scalar has escapes.
-fn at_start(node: Node<'_>, name: &str) -> Option<usize> {
-    let scalar = node
-        .as_scalar()
-        .filter(|scalar| scalar.text.starts_with(name))?;
-    let span = node.span();
-    match scalar.style {
-        Style::Plain => Some(span.start),
-        Style::Quoted => {
-            let verbatim = span.end - span.start == scalar.text.len() + 2;
-            verbatim.then_some(span.start + 1)
-        }
-        Style::Block => None,
-    }
+    let scalar = node.as_scalar()?;
+    let Span { file, start, end } = node.span();
+    let is_verbatim = end - start == scalar.text.len() + 2;
+    let start = match scalar.style {
+        _ if !scalar.text.starts_with(name) => return None,
+        Style::Plain => start,
+        Style::Quoted if is_verbatim => start + 1,
+        Style::Quoted | Style::Block => return None,
+    };
+    Some(Span::new(file, start, start + name.len()))
 }
 
 /// Names of the built-in types in other languages.
@@ -150,33 +133,26 @@ const FOREIGN: &[(&str, &str)] = &[
 /// Checks that variants of a choice and rows of a table are structs.
 pub(super) fn check_structs(draft: &Draft<'_>, faults: &mut Faults) {
     for (occurrence, name) in draft.references_to(Struct::KINDS) {
-        let what = if occurrence.part == Constants::NAME {
-            text!("一行", "a row")
-        } else {
-            text!("选项", "a variant")
-        };
-        check_struct(draft, name, occurrence.node, &what, faults);
-    }
-}
-
-fn check_struct(draft: &Draft<'_>, name: &str, node: Node<'_>, what: &Text, faults: &mut Faults) {
-    match draft.type_named(name) {
-        None => {
-            let fault = unknown_type(draft, name, node, faults);
-            faults.push(fault);
-        }
-        Some(ty) if !matches!(ty.def.shape, TypeShape::Struct(_)) => {
-            let message = text!(
-                "{what}应为结构，而 `{name}` 不是",
-                "{what} must be a struct, but `{name}` is not one",
-                what = what
-            );
-            faults.push(
+        let node = occurrence.node;
+        let fault = match draft.type_named(name) {
+            None => unknown_type(draft, name, node, faults),
+            Some(ty) if matches!(ty.def.shape, TypeShape::Struct(_)) => continue,
+            Some(ty) => {
+                let what = if occurrence.part == Constants::NAME {
+                    text!("一行", "a row")
+                } else {
+                    text!("选项", "a variant")
+                };
+                let message = text!(
+                    "{what}应为结构，而 `{name}` 不是",
+                    "{what} must be a struct, but `{name}` is not one",
+                    what = what
+                );
                 Diagnostic::error(FaultCode::NotAStruct, node.span(), message)
-                    .also_declared(ty.origin.name()),
-            );
-        }
-        Some(_) => {}
+                    .also_declared(ty.origin.name())
+            }
+        };
+        faults.push(fault);
     }
 }
 
