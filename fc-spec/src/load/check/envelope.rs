@@ -21,16 +21,16 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
         (ENVELOPE.request, &envelope.request),
         (ENVELOPE.response, &envelope.response),
     ] {
-        let used = fields
-            .iter()
-            .map(|field| (field.item.role, field.origin.at(ENVELOPE_FIELD.role)))
-            .collect::<Vec<_>>();
-        let has_text = (used.iter()).any(|(role, _)| *role == EnvelopeRole::ResultText);
+        let used = fields.iter();
+        let used = used.map(|it| (it.item.role, it.origin.at(ENVELOPE_FIELD.role)));
+        let has_text = used
+            .clone()
+            .any(|(role, _)| role == EnvelopeRole::ResultText);
         let is_response = key.name == ENVELOPE.response.name;
         let needed = |role| role == EnvelopeRole::ResultCode && is_response && has_text;
         check_each_once(
             needed,
-            &used,
+            used,
             envelope.origin.key_at(key),
             &text!("公共字段的键", "envelope key"),
             faults,

@@ -113,11 +113,8 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
     };
-    let used = frame
-        .header
-        .iter()
-        .filter_map(|field| Some((field.item.role?, field.origin.at(HEADER_FIELD.role))))
-        .collect::<Vec<_>>();
+    let used = frame.header.iter();
+    let used = used.filter_map(|it| Some((it.item.role?, it.origin.at(HEADER_FIELD.role))));
     let needed = |role| match role {
         HeaderRole::Head
         | HeaderRole::Kind
@@ -131,37 +128,32 @@ pub(super) fn check_header_roles(draft: &Draft<'_>, faults: &mut Faults) {
     };
     check_each_once(
         needed,
-        &used,
+        used,
         frame.origin.key_at(FRAME.header),
         &text!("包头字段", "header field"),
         faults,
     );
-    if let Some(head) = frame
-        .header
-        .iter()
-        .position(|field| field.item.role == Some(HeaderRole::Head))
-        && head > 0
-        && let Some(field) = frame.header.get(head)
-    {
-        faults.push(Diagnostic::error(
-            FaultCode::HeadNotFirst,
-            field.origin.name(),
-            text!(
-                "帧头应为第一个包头字段",
-                "the head must be the first header field"
-            ),
-        ));
+    let mut fields = frame.header.iter().enumerate();
+    let head = fields.find(|(_, field)| field.item.role == Some(HeaderRole::Head));
+    if let Some((1.., field)) = head {
+        let message = text!(
+            "帧头应为第一个包头字段",
+            "the head must be the first header field"
+        );
+        let span = field.origin.name();
+        faults.push(Diagnostic::error(FaultCode::HeadNotFirst, span, message));
     }
 }
 
 /// Reports each role that is `needed` but not in `used`, and each role that occurs twice in `used`.
 pub(super) fn check_each_once<R: Word>(
     needed: impl Fn(R) -> bool,
-    used: &[(R, Span)],
+    used: impl IntoIterator<Item = (R, Span)>,
     at: Span,
     what: &Text,
     faults: &mut Faults,
 ) {
+    let used: Vec<(R, Span)> = used.into_iter().collect();
     for role in R::SET.iter().copied() {
         let name = role.word();
         let mut places = used.iter().filter(|(used, _)| *used == role);
@@ -325,15 +317,11 @@ pub(super) fn check_kinds(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(frame) = &draft.frame else {
         return;
     };
-    let used = frame
-        .kinds
-        .iter()
-        .filter(|kind| kind.item.role != KindRole::Reserved)
-        .map(|kind| (kind.item.role, kind.origin.at(FRAME_KIND.role)))
-        .collect::<Vec<_>>();
+    let used = frame.kinds.iter();
+    let used = used.map(|kind| (kind.item.role, kind.origin.at(FRAME_KIND.role)));
     check_each_once(
         |role| role != KindRole::Reserved,
-        &used,
+        used.filter(|(role, _)| *role != KindRole::Reserved),
         frame.origin.key_at(FRAME.kinds),
         &text!("数据类型", "frame kind"),
         faults,
@@ -378,8 +366,7 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
     let encodings = frame.encodings.iter();
     let used = encodings
         .clone()
-        .map(|encoding| (encoding.item.role, encoding.origin.at(ENCODING.role)))
-        .collect::<Vec<_>>();
+        .map(|encoding| (encoding.item.role, encoding.origin.at(ENCODING.role)));
     let origin = frame.origin.key_at(FRAME.encodings);
     let has = |role| (frame.header.iter()).any(|field| field.item.role == Some(role));
     let mut lacking = |role: HeaderRole, why: &Text| {
@@ -395,28 +382,19 @@ pub(super) fn check_encodings(draft: &Draft<'_>, faults: &mut Faults) {
             text!("包头", "the header"),
         ));
     };
-    if !has(HeaderRole::Encoding) && !used.is_empty() {
-        let why = &text!(
+    let is_packed = used.clone().any(|(role, _)| role == EncodingRole::Gzip);
+    if !has(HeaderRole::Encoding) && !frame.encodings.is_empty() {
+        let why = text!(
             "无法区分一帧用了哪一种",
             "so a frame cannot show which of these it has"
         );
-        lacking(HeaderRole::Encoding, why);
-    } else if !has(HeaderRole::PlainLength)
-        && used.iter().any(|(role, _)| *role == EncodingRole::Gzip)
-    {
-        lacking(
-            HeaderRole::PlainLength,
-            &text!("而压缩的数据需要它", "which compressed data needs"),
-        );
+        lacking(HeaderRole::Encoding, &why);
+    } else if !has(HeaderRole::PlainLength) && is_packed {
+        let why = text!("而压缩的数据需要它", "which compressed data needs");
+        lacking(HeaderRole::PlainLength, &why);
     }
     let needed = |role| role == EncodingRole::Plain && has(HeaderRole::Encoding);
-    check_each_once(
-        needed,
-        &used,
-        origin,
-        &text!("压缩方式", "encoding"),
-        faults,
-    );
+    check_each_once(needed, used, origin, &text!("压缩方式", "encoding"), faults);
     super::names::check_distinct(
         &text!("压缩方式", "encodings"),
         encodings.map(|encoding| {

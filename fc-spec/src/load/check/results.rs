@@ -15,14 +15,11 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     let Some(&origin) = draft.valid.get(FILE.results.name) else {
         return;
     };
-    let used = draft
-        .results
-        .iter()
-        .filter_map(|result| Some((result.item.role?, result.origin.at(RESULT.role))))
-        .collect::<Vec<_>>();
+    let used = draft.results.iter();
+    let used = used.filter_map(|it| Some((it.item.role?, it.origin.at(RESULT.role))));
     check_each_once(
         |_: ResultRole| true,
-        &used,
+        used,
         origin.name(),
         &text!("结果码", "result code"),
         faults,
