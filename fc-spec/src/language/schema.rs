@@ -22,48 +22,26 @@ const LISTS_IN_TYPE: usize = 4;
 /// Returns the schema for specs whose texts are in these languages, indented, with a newline at its end.
 #[must_use]
 pub fn schema(texts: Languages) -> String {
-    let mut definitions = Definitions {
-        texts,
-        done: BTreeMap::new(),
-    };
-    let root = definitions.table_entries(File::TABLE);
-    definitions.add("body", |definitions| {
-        object([
-            ("type", string("object")),
-            (
-                "description",
-                string("Wire keys and their fields, in the order sent."),
-            ),
-            ("additionalProperties", definitions.kind(&FIELD_KIND)),
-        ])
-    });
-    document("Protocol spec", root, definitions)
+    document("Protocol spec", File::TABLE, texts)
 }
 
 /// Returns the schema of `fc.yaml`, like [`schema`].
 #[must_use]
 pub fn project_schema() -> String {
-    let mut definitions = Definitions {
-        texts: Languages::All,
-        done: BTreeMap::new(),
-    };
-    let root = definitions.table_entries(Project::TABLE);
-    document("Project settings", root, definitions)
+    document("Project settings", Project::TABLE, Languages::All)
 }
 
-fn document(title: &str, root: Vec<(String, Value)>, definitions: Definitions) -> String {
-    let mut entries = vec![
-        entry(
-            "$schema",
-            string("https://json-schema.org/draft/2020-12/schema"),
-        ),
-        entry("title", string(title)),
-    ];
+fn document(title: &str, table: &'static Table, texts: Languages) -> String {
+    let mut definitions = Definitions {
+        texts,
+        done: BTreeMap::new(),
+    };
+    let root = definitions.table_entries(table);
+    let draft = string("https://json-schema.org/draft/2020-12/schema");
+    let mut entries = vec![entry("$schema", draft), entry("title", string(title))];
     entries.extend(root);
-    entries.push(entry(
-        "$defs",
-        Value::Object(definitions.done.into_iter().collect()),
-    ));
+    let done = Value::Object(definitions.done.into_iter().collect());
+    entries.push(entry("$defs", done));
     Value::Object(entries).pretty() + "\n"
 }
 
@@ -138,18 +116,15 @@ impl Definitions {
     fn kind(&mut self, kind: &'static Kind) -> Value {
         match kind {
             Kind::Ref { name, .. } => self.kind(name),
-            Kind::Text | Kind::WireKey => object([("type", string("string"))]),
-            Kind::Bool => object([("type", string("boolean"))]),
+            Kind::Text | Kind::WireKey => of_type("string"),
+            Kind::Bool => of_type("boolean"),
             Kind::Int { min, max } => integer(*min, *max),
             Kind::Code => integer(0, u16::MAX.into()),
-            Kind::Number => object([("type", string("number"))]),
-            Kind::Scalar => object([(
-                "type",
-                ["boolean", "number", "string"]
-                    .into_iter()
-                    .map(string)
-                    .collect(),
-            )]),
+            Kind::Number => of_type("number"),
+            Kind::Scalar => {
+                let types = json_types(kind).iter().map(|ty| string(ty));
+                object([("type", types.collect())])
+            }
             Kind::Json => object([]),
             Kind::Date => pattern(DATE),
             Kind::Name => pattern(SNAKE),
@@ -162,10 +137,19 @@ impl Definitions {
             Kind::List { of, min, max } => self.list(of, *min, *max),
             Kind::Map(table) => self.table(table),
             Kind::Entries { key, value, min } => self.entries(key, value, *min),
-            Kind::Body => reference("body"),
+            Kind::Body => self.add("body", Self::body),
             Kind::Either(kinds) => self.either(kinds),
             Kind::ByKey { tables, otherwise } => self.by_key(tables, otherwise),
         }
+    }
+
+    fn body(&mut self) -> Value {
+        let text = "Wire keys and their fields, in the order sent.";
+        object([
+            ("type", string("object")),
+            ("description", string(text)),
+            ("additionalProperties", self.kind(&FIELD_KIND)),
+        ])
     }
 
     fn list(&mut self, of: &'static Kind, min: usize, max: usize) -> Value {
@@ -231,11 +215,7 @@ impl Definitions {
             .into_iter()
             .rev()
             .fold(one(last), |rest, (ty, schemas)| {
-                object([
-                    ("if", object([("type", string(ty))])),
-                    ("then", one(schemas)),
-                    ("else", rest),
-                ])
+                either_or(of_type(ty), one(schemas), rest)
             })
     }
 
@@ -259,21 +239,11 @@ impl Definitions {
                 ("required", [string(key)].into_iter().collect()),
                 ("properties", object([(key, text)])),
             ]);
-            last = object([
-                ("if", has_text),
-                ("then", self.table(first)),
-                ("else", last),
-            ]);
+            last = either_or(has_text, self.table(first), last);
         }
         tables.iter().rev().fold(last, |rest, (mark, table)| {
-            object([
-                (
-                    "if",
-                    object([("required", [string(mark)].into_iter().collect())]),
-                ),
-                ("then", self.table(table)),
-                ("else", rest),
-            ])
+            let is_marked = object([("required", [string(mark)].into_iter().collect())]);
+            either_or(is_marked, self.table(table), rest)
         })
     }
 
@@ -288,7 +258,7 @@ impl Definitions {
                     "A built-in type or the name of a declared one. `[T]` is a list of `T`. A `?` at the end marks an optional field.",
                 ),
             ),
-            ("if", object([("type", string("array"))])),
+            ("if", of_type("array")),
             ("then", self.type_list()),
             (
                 "else",
@@ -359,6 +329,16 @@ fn integer(min: i128, max: i128) -> Value {
 
 fn pattern(pattern: &str) -> Value {
     object([("type", string("string")), ("pattern", string(pattern))])
+}
+
+/// Returns the schema of any value of a JSON type.
+fn of_type(ty: &str) -> Value {
+    object([("type", string(ty))])
+}
+
+/// Returns a schema that depends on a condition.
+fn either_or(condition: Value, then: Value, otherwise: Value) -> Value {
+    object([("if", condition), ("then", then), ("else", otherwise)])
 }
 
 fn reference(name: &str) -> Value {
