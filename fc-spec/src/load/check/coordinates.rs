@@ -1,5 +1,6 @@
 //! Checks coordinate systems and stores, and the references to them.
 
+use super::fields::misfit;
 use super::iter::typed_fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::FIELD;
@@ -19,12 +20,8 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
             // An unknown type has its own error.
             let named = field.ty.innermost();
             if named.is_none_or(|named| draft.type_named(named.name()).is_some()) {
-                let message = text!(
-                    "`{coordinates}` 应用于对象或对象的列表，而 `{field}` 不是",
-                    "`{coordinates}` needs an object or a list of objects, but `{field}` is not one",
-                    coordinates = FIELD.coordinates.name,
-                    field = field.wire
-                );
+                let expected = text!("对象或对象的列表", "an object or a list of objects");
+                let message = misfit(FIELD.coordinates.name, field, &expected);
                 let span = part.origin.at(FIELD.coordinates);
                 let fault = Diagnostic::error(FaultCode::CoordinatesOnWrongType, span, message);
                 faults.push(fault.also_type(part.ty));

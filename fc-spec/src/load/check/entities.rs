@@ -1,5 +1,6 @@
 //! Checks entities and the fields that refer to them.
 
+use super::fields::misfit;
 use super::iter::fields;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::FIELD;
@@ -20,12 +21,11 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
         if named.is_some_and(|named| draft.type_named(named.name()).is_none()) {
             continue;
         }
-        let message = text!(
-            "`{refers}` 应用于整数、字符串或它们的列表，而 `{field}` 不是",
-            "`{refers}` needs an integer, a string or a list of them, but `{field}` is not one",
-            refers = FIELD.refers.name,
-            field = field.wire
+        let expected = text!(
+            "整数、字符串或它们的列表",
+            "an integer, a string or a list of them"
         );
+        let message = misfit(FIELD.refers.name, field, &expected);
         let span = part.origin.at(FIELD.refers);
         let fault = Diagnostic::error(FaultCode::RefersOnWrongType, span, message);
         faults.push(fault.also_type(part.ty));

@@ -11,7 +11,6 @@ use crate::model::{
     BodyState, Example, Field, Lang, Number, Pattern, PatternError, Quirk, Scalar, Text, Type,
     TypeShape, Value, WireForm,
 };
-use crate::source::Span;
 use crate::text;
 
 /// Checks that a field in the short form has a named type, whose title describes the field.
@@ -98,13 +97,11 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                     }
                 }
                 Type::Float(_) => {}
-                _ => faults.push(wrong_type(
-                    FaultCode::BoundsOnWrongType,
-                    key.name,
-                    &text!("数值", "a number"),
-                    field,
-                    (span, part.ty),
-                )),
+                _ => {
+                    let message = misfit(key.name, field, &text!("数值", "a number"));
+                    let fault = Diagnostic::error(FaultCode::BoundsOnWrongType, span, message);
+                    faults.push(fault.also_type(part.ty));
+                }
             }
         }
         if field.details().constraints.is_inverted() {
@@ -120,21 +117,14 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
     }
 }
 
-/// Returns the error for a key that does not apply to the type of the field.
-fn wrong_type(
-    code: FaultCode,
-    key: &str,
-    expected: &Text,
-    field: &Field,
-    (span, ty): (Span, Span),
-) -> Diagnostic {
-    let message = text!(
+/// Returns the message about a key that does not apply to the type of the field.
+pub(super) fn misfit(key: &str, field: &Field, expected: &Text) -> Text {
+    text!(
         "`{key}` 应用于{expected}，而 `{field}` 不是",
         "`{key}` needs {expected}, but `{field}` is not one",
         field = field.wire,
         expected = expected
-    );
-    Diagnostic::error(code, span, message).also_type(ty)
+    )
 }
 
 /// Checks that `length` belongs to strings, bytes and lists, and is in order.
@@ -145,15 +135,10 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let span = part.origin.at(FIELD.length);
         if !matches!(field.ty, Type::String | Type::Base64 | Type::Array(_)) {
-            let expected = &text!("字符串、base64 或列表", "a string, base64 or list");
-            let spans = (span, part.ty);
-            faults.push(wrong_type(
-                FaultCode::LengthOnWrongType,
-                FIELD.length.name,
-                expected,
-                field,
-                spans,
-            ));
+            let expected = text!("字符串、base64 或列表", "a string, base64 or list");
+            let message = misfit(FIELD.length.name, field, &expected);
+            let fault = Diagnostic::error(FaultCode::LengthOnWrongType, span, message);
+            faults.push(fault.also_type(part.ty));
         }
         if least > most {
             faults.push(
@@ -183,14 +168,9 @@ pub(super) fn check_patterns(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let span = part.origin.at(FIELD.pattern);
         if field.ty != Type::String {
-            let spans = (span, part.ty);
-            faults.push(wrong_type(
-                FaultCode::PatternOnWrongType,
-                FIELD.pattern.name,
-                &text!("字符串", "a string"),
-                field,
-                spans,
-            ));
+            let message = misfit(FIELD.pattern.name, field, &text!("字符串", "a string"));
+            let fault = Diagnostic::error(FaultCode::PatternOnWrongType, span, message);
+            faults.push(fault.also_type(part.ty));
         }
         if let Err(error) = Pattern::new(pattern) {
             let message = match error {
@@ -215,14 +195,10 @@ pub(super) fn check_only(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         }
         if !is_enum(draft, &field.ty) {
-            let spans = (part.origin.at(FIELD.only), part.ty);
-            faults.push(wrong_type(
-                FaultCode::OnlyOnWrongType,
-                FIELD.only.name,
-                &text!("枚举", "an enum"),
-                field,
-                spans,
-            ));
+            let span = part.origin.at(FIELD.only);
+            let message = misfit(FIELD.only.name, field, &text!("枚举", "an enum"));
+            let fault = Diagnostic::error(FaultCode::OnlyOnWrongType, span, message);
+            faults.push(fault.also_type(part.ty));
             continue;
         }
         let list = ValueList {
@@ -335,14 +311,9 @@ pub(super) fn check_quirks(draft: &Draft<'_>, faults: &mut Faults) {
                 Quirk::LenientBool => (text!("布尔值", "a bool"), field.ty == Type::Bool),
             };
             if !fits {
-                let spans = (node.span(), part.ty);
-                faults.push(wrong_type(
-                    FaultCode::QuirkOnWrongType,
-                    quirk.name(),
-                    &expected,
-                    field,
-                    spans,
-                ));
+                let (code, span) = (FaultCode::QuirkOnWrongType, node.span());
+                let fault = Diagnostic::error(code, span, misfit(quirk.name(), field, &expected));
+                faults.push(fault.also_type(part.ty));
             }
         }
     }
@@ -367,15 +338,10 @@ pub(super) fn check_wire_forms(draft: &Draft<'_>, faults: &mut Faults) {
             WireForm::Number => (text!("布尔值", "a bool"), field.ty == Type::Bool),
         };
         if !fits {
-            let spans = (part.origin.at(FIELD.wire), part.ty);
             let said = format!("{}: {}", FIELD.wire.name, field.wire_form.name());
-            faults.push(wrong_type(
-                FaultCode::WireOnWrongType,
-                &said,
-                &expected,
-                field,
-                spans,
-            ));
+            let (code, span) = (FaultCode::WireOnWrongType, part.origin.at(FIELD.wire));
+            let fault = Diagnostic::error(code, span, misfit(&said, field, &expected));
+            faults.push(fault.also_type(part.ty));
         }
     }
 }
