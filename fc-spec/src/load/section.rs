@@ -124,11 +124,8 @@ fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
                 "`{key}` belongs in a file under `commands/`",
                 key = entry.name()
             );
-            faults.push(Diagnostic::error(
-                FaultCode::MisplacedSection,
-                entry.key.span(),
-                message,
-            ));
+            let fault = Diagnostic::error(FaultCode::MisplacedSection, entry.key.span(), message);
+            faults.push(fault);
         }
     } else if FILE.group.of(tree.root()).is_none()
         && tree.is_whole
@@ -139,14 +136,11 @@ fn check_file(tree: &Parsed<'_>, faults: &mut Faults) {
             .find(|entry| grouped(entry))
             .or(entries.clone().next());
         let span = at.map_or(tree.root().span(), |entry| entry.key.span());
-        let fault = Diagnostic::error(
-            FaultCode::SectionMissing,
-            span,
-            text!(
-                "这个文件没有为其中的接口定义 `group`",
-                "this file does not define the `group` of its operations"
-            ),
+        let message = text!(
+            "这个文件没有为其中的接口定义 `group`",
+            "this file does not define the `group` of its operations"
         );
+        let fault = Diagnostic::error(FaultCode::SectionMissing, span, message);
         faults.push(fault.note(text!(
             "在文件开头写 `group: {{ id: …, zh: …, en: … }}`",
             "write `group: {{ id: …, zh: …, en: … }}` at the top of the file"
@@ -172,10 +166,8 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
             "`{name}` is defined twice",
             name = section.name
         );
-        faults.push(
-            Diagnostic::error(FaultCode::SectionTwice, span, message)
-                .also(*earlier, text!("首次定义在这里", "first defined here")),
-        );
+        let fault = Diagnostic::error(FaultCode::SectionTwice, span, message);
+        faults.push(fault.also(*earlier, text!("首次定义在这里", "first defined here")));
         false
     });
 }
@@ -240,12 +232,11 @@ fn check_present(trees: &[Parsed<'_>], sections: &[Section<'_>], faults: &mut Fa
         let is_there = sections.iter().any(|section| section.name == name);
         if !is_there && !faults.suggests(name) {
             let message = text!("规范中没有 `{name}`", "the spec has no `{name}`");
-            faults.push(
-                Diagnostic::error(FaultCode::SectionMissing, span, message).note(text!(
-                    "在 `{PROTOCOL}` 中定义 `{name}`",
-                    "define `{name}` in `{PROTOCOL}`"
-                )),
-            );
+            let fault = Diagnostic::error(FaultCode::SectionMissing, span, message);
+            faults.push(fault.note(text!(
+                "在 `{PROTOCOL}` 中定义 `{name}`",
+                "define `{name}` in `{PROTOCOL}`"
+            )));
         }
     }
 }

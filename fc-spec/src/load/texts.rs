@@ -46,17 +46,12 @@ pub(super) fn check(node: Node<'_>, faults: &mut Faults) {
         return;
     }
     if zh_text == en_text {
-        faults.push(
-            Diagnostic::error(
-                FaultCode::SameText,
-                en.span(),
-                text!(
-                    "英文与中文相同",
-                    "the English text is the same as the Chinese one"
-                ),
-            )
-            .also(zh.span(), text!("相同的文本", "the same text")),
+        let message = text!(
+            "英文与中文相同",
+            "the English text is the same as the Chinese one"
         );
+        let fault = Diagnostic::error(FaultCode::SameText, en.span(), message);
+        faults.push(fault.also(zh.span(), text!("相同的文本", "the same text")));
     } else if has_chinese(en_text) && !has_latin(en_text) {
         let message = text!("英文中没有英文", "the English text is not English");
         faults.push(Diagnostic::error(FaultCode::NotEnglish, en.span(), message));
@@ -82,11 +77,8 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
     };
     if text.trim().is_empty() {
         let message = text!("文本为空", "the text is empty");
-        faults.push(Diagnostic::error(
-            FaultCode::EmptyText,
-            node.span(),
-            message,
-        ));
+        let fault = Diagnostic::error(FaultCode::EmptyText, node.span(), message);
+        faults.push(fault);
         return false;
     }
     // The shape check reports an ambiguous spelling.
@@ -99,22 +91,16 @@ fn check_text(node: Node<'_>, faults: &mut Faults) -> bool {
             "the text contains the invisible character U+{hidden}",
             hidden = format!("{:04X}", u32::from(hidden))
         );
-        faults.push(Diagnostic::error(
-            FaultCode::HiddenCharacter,
-            node.span(),
-            message,
-        ));
+        let fault = Diagnostic::error(FaultCode::HiddenCharacter, node.span(), message);
+        faults.push(fault);
         return false;
     }
     if text.trim() != text {
-        let fault = Diagnostic::error(
-            FaultCode::TextSpacing,
-            node.span(),
-            text!(
-                "文本的开头或结尾有空白",
-                "the text starts or ends with white space"
-            ),
+        let message = text!(
+            "文本的开头或结尾有空白",
+            "the text starts or ends with white space"
         );
+        let fault = Diagnostic::error(FaultCode::TextSpacing, node.span(), message);
         let is_simple = scalar.style == Style::Quoted && !text.contains('\n');
         faults.push(if is_simple {
             fault.fix(

@@ -98,17 +98,14 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
             "规范有 {answers} 条答复写了 `ids`，但没有 `conflicts`",
             "the spec has {answers} answers with `ids` but no `conflicts`"
         );
+        let span = first.origin.at(ANSWER.ids);
         faults.push(
-            Diagnostic::error(
-                FaultCode::UnknownConflict,
-                first.origin.at(ANSWER.ids),
-                message,
-            )
-            .label(text!("这是第一条", "this is the first"))
-            .note(text!(
-                "在 `conflicts:` 下声明疑问；检查是否缺少那个文件",
-                "declare conflicts under `conflicts:`; check whether their file is missing"
-            )),
+            Diagnostic::error(FaultCode::UnknownConflict, span, message)
+                .label(text!("这是第一条", "this is the first"))
+                .note(text!(
+                    "在 `conflicts:` 下声明疑问；检查是否缺少那个文件",
+                    "declare conflicts under `conflicts:`; check whether their file is missing"
+                )),
         );
         return;
     }
@@ -119,12 +116,11 @@ pub(super) fn check_known(draft: &Draft<'_>, faults: &mut Faults) {
                 continue;
             }
             let message = text!("没有疑问 {id}", "there is no conflict {id}");
-            faults.push(
-                Diagnostic::error(FaultCode::UnknownConflict, node.span(), message).note(text!(
-                    "在 `conflicts:` 下声明",
-                    "declare it under `conflicts:`"
-                )),
-            );
+            let fault = Diagnostic::error(FaultCode::UnknownConflict, node.span(), message);
+            faults.push(fault.note(text!(
+                "在 `conflicts:` 下声明",
+                "declare it under `conflicts:`"
+            )));
         }
     }
 }
@@ -142,10 +138,13 @@ pub(super) fn check_answered(draft: &Draft<'_>, faults: &mut Faults) {
     for conflict in &draft.conflicts {
         if is_conflict_id(&conflict.item.id) && !answered.contains(conflict.item.id.as_str()) {
             let message = text!("{id} 没有答复", "{id} has no answer", id = conflict.item.id);
-            faults.push(
-                Diagnostic::error(FaultCode::UnansweredConflict, conflict.origin.name(), message)
-                    .note(text!("在相关内容的 `answers:` 下答复；还没有答案时写 `as: question`", "answer it under `answers:` where it belongs; write `as: question` if there is no answer yet")),
+            let span = conflict.origin.name();
+            let note = text!(
+                "在相关内容的 `answers:` 下答复；还没有答案时写 `as: question`",
+                "answer it under `answers:` where it belongs; write `as: question` if there is no answer yet"
             );
+            let fault = Diagnostic::error(FaultCode::UnansweredConflict, span, message);
+            faults.push(fault.note(note));
         }
     }
 }
@@ -187,14 +186,9 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
                 "第 {number} 节列为缺失，却是某个接口的出处",
                 "section {number} is listed as missing, but an operation names it as its source"
             );
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::MissingSectionUsed,
-                    section.origin.name(),
-                    message,
-                )
-                .also(*claim, text!("写作出处", "named as a source")),
-            );
+            let span = section.origin.name();
+            let fault = Diagnostic::error(FaultCode::MissingSectionUsed, span, message);
+            faults.push(fault.also(*claim, text!("写作出处", "named as a source")));
         }
     }
     let mut before = 0;
@@ -212,11 +206,12 @@ pub(super) fn check_sections(draft: &Draft<'_>, faults: &mut Faults) {
                 "{gap} neither used by an operation nor listed as missing",
                 gap = gap
             );
-            faults.push(
-                Diagnostic::error(FaultCode::SectionGap, span, message)
-                    .label(text!("下一个已知的章节", "the next known section"))
-                    .note(text!("写进相应接口的 `source`，或列在 `protocol.yaml` 的 `sections:` 下", "name it in the `source` of its operation, or under `sections:` in `protocol.yaml`")),
+            let note = text!(
+                "写进相应接口的 `source`，或列在 `protocol.yaml` 的 `sections:` 下",
+                "name it in the `source` of its operation, or under `sections:` in `protocol.yaml`"
             );
+            let fault = Diagnostic::error(FaultCode::SectionGap, span, message).note(note);
+            faults.push(fault.label(text!("下一个已知的章节", "the next known section")));
         }
         before = section;
     }

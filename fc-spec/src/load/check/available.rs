@@ -118,9 +118,8 @@ pub(super) fn check_optional(draft: &Draft<'_>, faults: &mut Faults) {
             field = field.wire
         );
         let span = part.origin.key_at(COMMON.available);
-        let fault = Diagnostic::error(FaultCode::LimitedButRequired, span, message);
         faults.push(
-            fault
+            Diagnostic::error(FaultCode::LimitedButRequired, span, message)
                 .also(part.ty, text!("在这里写成必填", "required here"))
                 .note(text!("改为可选", "make it optional")),
         );

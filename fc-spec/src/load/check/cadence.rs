@@ -69,14 +69,11 @@ pub(super) fn check_deadlines(draft: &Draft<'_>, faults: &mut Faults) {
                 "no command sets off `{report}`, so `within_ms` has no start",
                 report = report.name
             );
-            faults.push(
-                Diagnostic::error(FaultCode::DeadlineOfNothing, entry.key.span(), message).note(
-                    text!(
-                        "在某条指令的 `sets_off:` 中写上这个上报",
-                        "name the report in `sets_off:` of a command"
-                    ),
-                ),
-            );
+            let fault = Diagnostic::error(FaultCode::DeadlineOfNothing, entry.key.span(), message);
+            faults.push(fault.note(text!(
+                "在某条指令的 `sets_off:` 中写上这个上报",
+                "name the report in `sets_off:` of a command"
+            )));
         }
     }
 }

@@ -16,21 +16,17 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
     for range in &draft.ranges {
         let item = &range.item;
         if item.first > item.last {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::RangeInverted,
-                    range.origin.at(RANGE.to),
-                    text!(
-                        "号段的终点 {last} 早于起点",
-                        "the range ends at {last}, before it starts",
-                        last = item.last_spelling
-                    ),
-                )
-                .also(
-                    range.origin.at(RANGE.from),
-                    text!("起点在这里", "it starts here"),
-                ),
+            let message = text!(
+                "号段的终点 {last} 早于起点",
+                "the range ends at {last}, before it starts",
+                last = item.last_spelling
             );
+            let span = range.origin.at(RANGE.to);
+            let fault = Diagnostic::error(FaultCode::RangeInverted, span, message);
+            faults.push(fault.also(
+                range.origin.at(RANGE.from),
+                text!("起点在这里", "it starts here"),
+            ));
             continue;
         }
         if let Some(earlier) = reached
@@ -43,17 +39,12 @@ pub(super) fn check_ranges(draft: &Draft<'_>, faults: &mut Faults) -> bool {
                 from = earlier.item.first_spelling,
                 to = earlier.item.last_spelling
             );
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::RangesOverlap,
-                    range.origin.at(RANGE.from),
-                    message,
-                )
-                .also(
-                    earlier.origin.at(RANGE.to),
-                    text!("另一个号段到这里为止", "the other range ends here"),
-                ),
-            );
+            let span = range.origin.at(RANGE.from);
+            let fault = Diagnostic::error(FaultCode::RangesOverlap, span, message);
+            faults.push(fault.also(
+                earlier.origin.at(RANGE.to),
+                text!("另一个号段到这里为止", "the other range ends here"),
+            ));
         }
         if reached.is_none_or(|earlier| earlier.item.last < item.last) {
             reached = Some(range);
@@ -73,10 +64,8 @@ pub(super) fn check_retired(draft: &Draft<'_>, faults: &mut Faults) {
                 "{code} is retired twice",
                 code = retired.item.spelling
             );
-            faults.push(
-                Diagnostic::error(FaultCode::DuplicateRetired, span, message)
-                    .also(earlier, text!("第一次在这里", "first here")),
-            );
+            let fault = Diagnostic::error(FaultCode::DuplicateRetired, span, message);
+            faults.push(fault.also(earlier, text!("第一次在这里", "first here")));
         }
     }
 }
@@ -119,11 +108,8 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
                     "write `unassigned` until it has its own code"
                 )
             };
-            faults.push(
-                Diagnostic::error(FaultCode::DuplicateCode, span, message)
-                    .also_first(code_span(earlier))
-                    .note(remedy),
-            );
+            let fault = Diagnostic::error(FaultCode::DuplicateCode, span, message);
+            faults.push(fault.also_first(code_span(earlier)).note(remedy));
         } else {
             users.push(operation);
         }
@@ -132,10 +118,8 @@ pub(super) fn check_unique(draft: &Draft<'_>, faults: &mut Faults) {
                 "{spelling} 已退役，不能再用",
                 "{spelling} is retired and must not be used again"
             );
-            faults.push(
-                Diagnostic::error(FaultCode::RetiredCode, span, message)
-                    .also(*retired, text!("在这里退役", "retired here")),
-            );
+            let fault = Diagnostic::error(FaultCode::RetiredCode, span, message);
+            faults.push(fault.also(*retired, text!("在这里退役", "retired here")));
         }
     }
 }
@@ -166,20 +150,15 @@ pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
             .partition_point(|range| range.item.first <= code);
         let range = at.checked_sub(1).and_then(|at| draft.ranges.get(at));
         let Some(range) = range.filter(|range| code <= range.item.last) else {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::CodeOutsideRanges,
-                    span,
-                    text!(
-                        "{spelling} 不在任何号段内",
-                        "{spelling} is outside all code ranges"
-                    ),
-                )
-                .note(text!(
-                    "使用 `codes.ranges` 中某个号段的功能码，或者声明新的号段",
-                    "use a code from a range in `codes.ranges`, or declare a range"
-                )),
+            let message = text!(
+                "{spelling} 不在任何号段内",
+                "{spelling} is outside all code ranges"
             );
+            let fault = Diagnostic::error(FaultCode::CodeOutsideRanges, span, message);
+            faults.push(fault.note(text!(
+                "使用 `codes.ranges` 中某个号段的功能码，或者声明新的号段",
+                "use a code from a range in `codes.ranges`, or declare a range"
+            )));
             continue;
         };
         // Without valid `sections` it is unknown whether the operation is new.
@@ -187,16 +166,12 @@ pub(super) fn check_ranges_of_codes(draft: &Draft<'_>, faults: &mut Faults) {
         let sections = SOURCE.sections.of(source).and_then(Node::as_sequence);
         let is_new = operation.item.sections.is_empty() && sections.is_some();
         if let Some(reason) = objection(&operation.item, range.item.usage, is_new) {
-            let fault = Diagnostic::error(
-                FaultCode::CodeInWrongRange,
-                span,
-                text!(
-                    "{spelling} 所在的号段{reason}",
-                    "{spelling} is in a range {reason}",
-                    reason = reason
-                ),
-            )
-            .also(
+            let message = text!(
+                "{spelling} 所在的号段{reason}",
+                "{spelling} is in a range {reason}",
+                reason = reason
+            );
+            let fault = Diagnostic::error(FaultCode::CodeInWrongRange, span, message).also(
                 range.origin.at(RANGE.r#use),
                 text!("号段的用途", "the purpose of the range"),
             );

@@ -39,12 +39,11 @@ pub(super) fn check_objects(draft: &Draft<'_>, faults: &mut Faults) {
                 "`{ty}` already has the coordinate system `{known}`",
                 ty = field.ty.item()
             );
-            faults.push(
-                Diagnostic::error(FaultCode::CoordinatesTwice, span, message).note(text!(
-                    "类型用于几个坐标系时，`coordinates` 只写在字段上",
-                    "if a type is used in several systems, write `coordinates` on the fields only"
-                )),
-            );
+            let fault = Diagnostic::error(FaultCode::CoordinatesTwice, span, message);
+            faults.push(fault.note(text!(
+                "类型用于几个坐标系时，`coordinates` 只写在字段上",
+                "if a type is used in several systems, write `coordinates` on the fields only"
+            )));
         }
     }
 }
@@ -59,12 +58,11 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
                 "no field of {what} has a unit of length",
                 what = what
             );
-            faults.push(
-                Diagnostic::error(FaultCode::CoordinatesWithoutLength, span, message).note(text!(
-                    "给位置写上 `unit`，例如 `m`",
-                    "write the `unit` of its positions, such as `m`"
-                )),
-            );
+            let fault = Diagnostic::error(FaultCode::CoordinatesWithoutLength, span, message);
+            faults.push(fault.note(text!(
+                "给位置写上 `unit`，例如 `m`",
+                "write the `unit` of its positions, such as `m`"
+            )));
         }
     };
     for ty in &draft.types {

@@ -34,12 +34,11 @@ pub(super) fn check_values(draft: &Draft<'_>, faults: &mut Faults) {
                                 kind = kind.name()
                             );
                             let span = part.origin.name();
-                            faults.push(
-                                Diagnostic::error(FaultCode::EnumValueType, span, message).also(
-                                    ty.origin.at(ENUM.r#enum),
-                                    text!("发送时的类型", "the type that is sent"),
-                                ),
-                            );
+                            let fault = Diagnostic::error(FaultCode::EnumValueType, span, message);
+                            faults.push(fault.also(
+                                ty.origin.at(ENUM.r#enum),
+                                text!("发送时的类型", "the type that is sent"),
+                            ));
                         }
                     }
                 }

@@ -38,11 +38,9 @@ pub(super) fn check_roles(draft: &Draft<'_>, faults: &mut Faults) {
     }
     for field in &envelope.request {
         if field.item.role != EnvelopeRole::Time {
-            faults.push(Diagnostic::error(
-                FaultCode::ResultInRequest,
-                field.origin.at(ENVELOPE_FIELD.role),
-                text!("请求不带结果", "a request carries no result"),
-            ));
+            let message = text!("请求不带结果", "a request carries no result");
+            let span = field.origin.at(ENVELOPE_FIELD.role);
+            faults.push(Diagnostic::error(FaultCode::ResultInRequest, span, message));
         }
     }
 }
@@ -90,14 +88,9 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                     "an envelope key with this role must be {expected}",
                     expected = expected.spaced()
                 );
-                faults.push(
-                    Diagnostic::error(
-                        FaultCode::EnvelopeType,
-                        origin.at(ENVELOPE_FIELD.r#type),
-                        message,
-                    )
-                    .also(origin.at(ENVELOPE_FIELD.role), text!("角色", "the role")),
-                );
+                let span = origin.at(ENVELOPE_FIELD.r#type);
+                let fault = Diagnostic::error(FaultCode::EnvelopeType, span, message);
+                faults.push(fault.also(origin.at(ENVELOPE_FIELD.role), text!("角色", "the role")));
             } else if let Some(node) = ENVELOPE_FIELD.example.of(origin.node) {
                 faults.extend(check_type(draft, &item.ty, node));
             }
@@ -111,10 +104,8 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                     "two envelope keys are called `{name}` in code",
                     name = item.name
                 );
-                faults.push(
-                    Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                        .also_first(earlier),
-                );
+                let fault = Diagnostic::error(FaultCode::DuplicateFieldName, span, message);
+                faults.push(fault.also_first(earlier));
             }
         }
     }

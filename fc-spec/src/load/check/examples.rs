@@ -14,43 +14,34 @@ use crate::text;
 pub(super) fn check_present(draft: &Draft<'_>, faults: &mut Faults) {
     for (_, field, part) in fields(draft) {
         if is_absent_required(field) {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::AbsentRequired,
-                    part.origin.at(FIELD.example),
-                    text!(
-                        "`{field}` 是必填，示例不能省略它",
-                        "`{field}` is required, so an example cannot leave it out",
-                        field = field.wire
-                    ),
-                )
-                .also(
-                    part.ty,
-                    text!(
-                        "写上示例，或者在类型后面加 `?` 改为可选",
-                        "write an example, or add `?` to the type to make it optional"
-                    ),
-                ),
+            let message = text!(
+                "`{field}` 是必填，示例不能省略它",
+                "`{field}` is required, so an example cannot leave it out",
+                field = field.wire
             );
+            let span = part.origin.at(FIELD.example);
+            let fault = Diagnostic::error(FaultCode::AbsentRequired, span, message);
+            faults.push(fault.also(
+                part.ty,
+                text!(
+                    "写上示例，或者在类型后面加 `?` 改为可选",
+                    "write an example, or add `?` to the type to make it optional"
+                ),
+            ));
         } else if field.example == Example::Derived
             && !is_derivable(&field.ty)
             && !part.borrows_text
         {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::MissingExample,
-                    part.origin.name(),
-                    text!(
-                        "`{field}` 没有示例",
-                        "`{field}` has no example",
-                        field = field.wire
-                    ),
-                )
-                .note(text!(
-                    "写上 `example`：文档、示例机器人和标准帧都要用",
-                    "write `example`: the documentation, the example robot and the golden frames use it"
-                )),
+            let message = text!(
+                "`{field}` 没有示例",
+                "`{field}` has no example",
+                field = field.wire
             );
+            let fault = Diagnostic::error(FaultCode::MissingExample, part.origin.name(), message);
+            faults.push(fault.note(text!(
+                "写上 `example`：文档、示例机器人和标准帧都要用",
+                "write `example`: the documentation, the example robot and the golden frames use it"
+            )));
         }
     }
 }

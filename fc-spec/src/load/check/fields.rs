@@ -22,10 +22,12 @@ pub(super) fn check_short_forms(draft: &Draft<'_>, faults: &mut Faults) {
                 "`{field}` has no description",
                 field = field.wire
             );
-            faults.push(
-                Diagnostic::error(FaultCode::ShortForm, part.ty, message)
-                    .note(text!("写成 `{{ type: …, zh: …, en: … }}`；简写只用于命名类型，以类型的标题说明字段", "write `{{ type: …, zh: …, en: … }}`; the short form is for named types, whose title describes the field")),
+            let note = text!(
+                "写成 `{{ type: …, zh: …, en: … }}`；简写只用于命名类型，以类型的标题说明字段",
+                "write `{{ type: …, zh: …, en: … }}`; the short form is for named types, whose title describes the field"
             );
+            let fault = Diagnostic::error(FaultCode::ShortForm, part.ty, message);
+            faults.push(fault.note(note));
         }
     }
 }
@@ -90,10 +92,8 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
                             "this is not a value of {kind}",
                             kind = kind.name()
                         );
-                        faults.push(
-                            Diagnostic::error(FaultCode::BoundsBeyondType, span, message)
-                                .also_type(part.ty),
-                        );
+                        let fault = Diagnostic::error(FaultCode::BoundsBeyondType, span, message);
+                        faults.push(fault.also_type(part.ty));
                     }
                 }
                 Type::Float(_) => {}
@@ -105,14 +105,10 @@ pub(super) fn check_bounds(draft: &Draft<'_>, faults: &mut Faults) {
             }
         }
         if field.details().constraints.is_inverted() {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::MinAboveMax,
-                    part.origin.at(FIELD.min),
-                    text!("`min` 大于 `max`", "`min` is larger than `max`"),
-                )
-                .also(part.origin.at(FIELD.max), text!("最大值", "the largest")),
-            );
+            let message = text!("`min` 大于 `max`", "`min` is larger than `max`");
+            let span = part.origin.at(FIELD.min);
+            let fault = Diagnostic::error(FaultCode::MinAboveMax, span, message);
+            faults.push(fault.also(part.origin.at(FIELD.max), text!("最大值", "the largest")));
         }
     }
 }
@@ -141,21 +137,16 @@ pub(super) fn check_lengths(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(fault.also_type(part.ty));
         }
         if least > most {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::LengthInverted,
-                    span,
-                    text!(
-                        "最小长度 {least} 大于最大长度 {most}",
-                        "the minimum length, {least}, is larger than the maximum, {most}"
-                    ),
-                )
-                .fix(
-                    span,
-                    format!("[{most}, {least}]"),
-                    text!("交换两者", "swap them"),
-                ),
+            let message = text!(
+                "最小长度 {least} 大于最大长度 {most}",
+                "the minimum length, {least}, is larger than the maximum, {most}"
             );
+            let fault = Diagnostic::error(FaultCode::LengthInverted, span, message);
+            faults.push(fault.fix(
+                span,
+                format!("[{most}, {least}]"),
+                text!("交换两者", "swap them"),
+            ));
         }
     }
 }
@@ -229,24 +220,19 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
         };
         let span = part.origin.at(FIELD.default);
         if !field.optional {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::DefaultOnRequired,
-                    span,
-                    text!(
-                        "`{field}` 是必填，不能有默认值",
-                        "`{field}` is required, so it cannot have a default",
-                        field = field.wire
-                    ),
-                )
-                .also(
-                    part.ty,
-                    text!(
-                        "去掉默认值，或者在类型后面加 `?` 改为可选",
-                        "remove the default, or add `?` to the type to make it optional"
-                    ),
-                ),
+            let message = text!(
+                "`{field}` 是必填，不能有默认值",
+                "`{field}` is required, so it cannot have a default",
+                field = field.wire
             );
+            let fault = Diagnostic::error(FaultCode::DefaultOnRequired, span, message);
+            faults.push(fault.also(
+                part.ty,
+                text!(
+                    "去掉默认值，或者在类型后面加 `?` 改为可选",
+                    "remove the default, or add `?` to the type to make it optional"
+                ),
+            ));
         }
         if is_default(draft, &field.ty, default) {
             if let Some(node) = FIELD.default.of(part.origin.node) {
@@ -255,18 +241,13 @@ pub(super) fn check_defaults(draft: &Draft<'_>, faults: &mut Faults) {
                 faults.extend(broken.into_iter().map(|it| Diagnostic { code, ..it }));
             }
         } else {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::DefaultType,
-                    span,
-                    text!(
-                        "这个值不符合 `{field}` 的类型",
-                        "this is not a value of the type of `{field}`",
-                        field = field.wire
-                    ),
-                )
-                .also_type(part.ty),
+            let message = text!(
+                "这个值不符合 `{field}` 的类型",
+                "this is not a value of the type of `{field}`",
+                field = field.wire
             );
+            let fault = Diagnostic::error(FaultCode::DefaultType, span, message);
+            faults.push(fault.also_type(part.ty));
         }
     }
 }

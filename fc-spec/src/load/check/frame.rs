@@ -29,18 +29,13 @@ pub(super) fn check_ports(draft: &Draft<'_>, faults: &mut Faults) {
                 .of(ports.and_then(|ports| ports.get(port.name())));
             port.map_or(transport.origin.name(), Node::span)
         };
-        faults.push(
-            Diagnostic::error(
-                FaultCode::SamePort,
-                span(PortRole::Data),
-                text!(
-                    "两个端口的号码都是 {number}",
-                    "both ports have the number {number}",
-                    number = second.number
-                ),
-            )
-            .also_first(span(PortRole::Command)),
+        let message = text!(
+            "两个端口的号码都是 {number}",
+            "both ports have the number {number}",
+            number = second.number
         );
+        let fault = Diagnostic::error(FaultCode::SamePort, span(PortRole::Data), message);
+        faults.push(fault.also_first(span(PortRole::Command)));
     }
 }
 
@@ -49,20 +44,15 @@ pub(super) fn check_header_types(draft: &Draft<'_>, faults: &mut Faults) {
     for field in header(draft) {
         let span = field.origin.at(HEADER_FIELD.r#type);
         if field.item.ty.size() == 0 {
-            faults.push(
-                Diagnostic::error(
-                    FaultCode::BadHeaderType,
-                    span,
-                    text!(
-                        "包头字段的类型应为 u8、u16、u32、u64 或 `bytes(N)`",
-                        "expected a header field type: u8, u16, u32, u64 or `bytes(N)`"
-                    ),
-                )
-                .note(text!(
-                    "类型有 u8、u16、u32、u64 和 `bytes(N)`",
-                    "the types are u8, u16, u32, u64 and `bytes(N)`"
-                )),
+            let message = text!(
+                "包头字段的类型应为 u8、u16、u32、u64 或 `bytes(N)`",
+                "expected a header field type: u8, u16, u32, u64 or `bytes(N)`"
             );
+            let fault = Diagnostic::error(FaultCode::BadHeaderType, span, message);
+            faults.push(fault.note(text!(
+                "类型有 u8、u16、u32、u64 和 `bytes(N)`",
+                "the types are u8, u16, u32, u64 and `bytes(N)`"
+            )));
             continue;
         }
         let ty = field.item.ty;
@@ -186,24 +176,21 @@ pub(super) fn check_header_values(draft: &Draft<'_>, faults: &mut Faults) {
         let item = &field.item;
         if item.has_quirk(HeaderQuirk::ZeroWhenPlain) && item.role != Some(HeaderRole::PlainLength)
         {
-            faults.push(Diagnostic::error(
-                FaultCode::HeaderQuirk,
-                field.origin.at(HEADER_FIELD.quirk),
-                text!(
-                    "`zero_when_plain` 只适用于角色为 `plain_length` 的字段",
-                    "`zero_when_plain` only applies to the field with the role `plain_length`"
-                ),
-            ));
+            let message = text!(
+                "`zero_when_plain` 只适用于角色为 `plain_length` 的字段",
+                "`zero_when_plain` only applies to the field with the role `plain_length`"
+            );
+            let span = field.origin.at(HEADER_FIELD.quirk);
+            faults.push(Diagnostic::error(FaultCode::HeaderQuirk, span, message));
         }
         if HEADER_FIELD.algorithm.of(field.origin.node).is_some() && item.digest().is_none() {
-            faults.push(Diagnostic::error(
-                FaultCode::AlgorithmWithoutDigest,
-                field.origin.at(HEADER_FIELD.algorithm),
-                text!(
-                    "只有角色为 `digest` 的字段才有算法",
-                    "only the field with the role `digest` has an algorithm"
-                ),
-            ));
+            let message = text!(
+                "只有角色为 `digest` 的字段才有算法",
+                "only the field with the role `digest` has an algorithm"
+            );
+            let span = field.origin.at(HEADER_FIELD.algorithm);
+            let fault = Diagnostic::error(FaultCode::AlgorithmWithoutDigest, span, message);
+            faults.push(fault);
         }
         if HEADER_FIELD.value.of(field.origin.node).is_none() {
             continue;
@@ -286,29 +273,23 @@ pub(super) fn check_heads(draft: &Draft<'_>, faults: &mut Faults) {
                 bytes = head.len(),
                 size = field.item.ty.size()
             );
-            faults.push(
-                Diagnostic::error(FaultCode::HeadLength, span(key), message).also(
-                    field.origin.at(HEADER_FIELD.r#type),
-                    text!("帧头字段", "the head field"),
-                ),
-            );
+            let fault = Diagnostic::error(FaultCode::HeadLength, span(key), message);
+            faults.push(fault.also(
+                field.origin.at(HEADER_FIELD.r#type),
+                text!("帧头字段", "the head field"),
+            ));
         }
     }
     if frame.request_head == frame.response_head {
-        faults.push(
-            Diagnostic::error(
-                FaultCode::HeadsEqual,
-                span(HEADS.response),
-                text!(
-                    "请求和响应的帧头相同，无法区分",
-                    "requests and responses have the same head and cannot be distinguished"
-                ),
-            )
-            .also(
-                span(HEADS.request),
-                text!("请求的帧头", "the head of a request"),
-            ),
+        let message = text!(
+            "请求和响应的帧头相同，无法区分",
+            "requests and responses have the same head and cannot be distinguished"
         );
+        let fault = Diagnostic::error(FaultCode::HeadsEqual, span(HEADS.response), message);
+        faults.push(fault.also(
+            span(HEADS.request),
+            text!("请求的帧头", "the head of a request"),
+        ));
     }
 }
 

@@ -17,14 +17,12 @@ pub(super) fn check_purpose(draft: &Draft<'_>, faults: &mut Faults) {
                 "答复没有 `ids`，也没有 `about`",
                 "the answer has neither `ids` nor `about`"
             );
-            faults.push(
-                Diagnostic::error(FaultCode::AnswerToNothing, answer.origin.name(), message).note(
-                    text!(
-                        "在 `ids:` 中写明疑问，或在 `about:` 中写明涉及的内容",
-                        "name a conflict in `ids:`, or a fact in `about:`"
-                    ),
-                ),
-            );
+            let span = answer.origin.name();
+            let fault = Diagnostic::error(FaultCode::AnswerToNothing, span, message);
+            faults.push(fault.note(text!(
+                "在 `ids:` 中写明疑问，或在 `about:` 中写明涉及的内容",
+                "name a conflict in `ids:`, or a fact in `about:`"
+            )));
         }
     }
 }
@@ -93,10 +91,13 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
                         now = now(&covered),
                         name = name
                     );
-                    faults.push(
-                        Diagnostic::error(FaultCode::GovernedFact, covered.path.span(), message)
-                            .note(text!("用 `fcproto settle` 写入负责人的答复；还没有答复时，把 `about:` 一起修改", "record the owner's answer with `fcproto settle`; without an answer, change `about:` as well")),
+                    let span = covered.path.span();
+                    let note = text!(
+                        "用 `fcproto settle` 写入负责人的答复；还没有答复时，把 `about:` 一起修改",
+                        "record the owner's answer with `fcproto settle`; without an answer, change `about:` as well"
                     );
+                    let fault = Diagnostic::error(FaultCode::GovernedFact, span, message);
+                    faults.push(fault.note(note));
                 }
                 Some(_) if covered.is_untouched() => {
                     let message = text!(
@@ -107,11 +108,13 @@ pub(super) fn check_held(draft: &Draft<'_>, faults: &mut Faults) {
                     );
                     let at = ANSWER.confirmed.entry(answer.origin.node);
                     let at = at.map_or(covered.path.span(), |entry| entry.key.span());
-                    faults.push(
-                        Diagnostic::error(FaultCode::SettledButUntouched, at, message)
-                            .also(covered.path.span(), text!("涉及的内容", "its fact"))
-                            .note(text!("写入负责人的答复；答复没有涉及它时，从 `about:` 中去掉", "write the owner's answer, or remove it from `about:` if the owner did not mention it")),
+                    let note = text!(
+                        "写入负责人的答复；答复没有涉及它时，从 `about:` 中去掉",
+                        "write the owner's answer, or remove it from `about:` if the owner did not mention it"
                     );
+                    let fault = Diagnostic::error(FaultCode::SettledButUntouched, at, message);
+                    let fault = fault.also(covered.path.span(), text!("涉及的内容", "its fact"));
+                    faults.push(fault.note(note));
                 }
                 _ => {}
             }

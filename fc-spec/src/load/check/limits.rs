@@ -16,20 +16,16 @@ pub(super) fn check_header(draft: &Draft<'_>, faults: &mut Faults) {
     };
     let header = header_len(frame);
     if usize::try_from(limits.item.frame_bytes).is_ok_and(|bytes| bytes < header) {
-        faults.push(
-            Diagnostic::error(
-                FaultCode::LimitTooSmall,
-                limits.origin.at(LIMITS.frame_bytes),
-                text!(
-                    "上限放不下任何帧：包头就有 {header} 字节",
-                    "the limit is too small for any frame: the header alone has {header} bytes"
-                ),
-            )
-            .also(
-                frame.origin.key_at(FRAME.header),
-                text!("包头", "the header"),
-            ),
+        let message = text!(
+            "上限放不下任何帧：包头就有 {header} 字节",
+            "the limit is too small for any frame: the header alone has {header} bytes"
         );
+        let span = limits.origin.at(LIMITS.frame_bytes);
+        let fault = Diagnostic::error(FaultCode::LimitTooSmall, span, message);
+        faults.push(fault.also(
+            frame.origin.key_at(FRAME.header),
+            text!("包头", "the header"),
+        ));
     }
 }
 

@@ -22,9 +22,8 @@ pub(super) fn check_groups(draft: &Draft<'_>, faults: &mut Faults) {
                 "有两个文件定义了分组 `{id}`",
                 "two files define a group `{id}`"
             );
-            faults.push(
-                Diagnostic::error(FaultCode::DuplicateGroup, span, message).also_first(earlier),
-            );
+            let fault = Diagnostic::error(FaultCode::DuplicateGroup, span, message);
+            faults.push(fault.also_first(earlier));
         }
     }
 }
@@ -97,9 +96,8 @@ pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
                 "two tables are named `{id}`",
                 id = table.item.id
             );
-            faults.push(
-                Diagnostic::error(FaultCode::DuplicateTable, span, message).also_first(earlier),
-            );
+            let fault = Diagnostic::error(FaultCode::DuplicateTable, span, message);
+            faults.push(fault.also_first(earlier));
         }
     }
 }
@@ -130,12 +128,9 @@ pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
             continue;
         }
         let name = &ty.def.name;
-        let fault = Diagnostic::error(
-            FaultCode::DuplicateType,
-            ty.origin.name(),
-            text!("有两个类型都叫 `{name}`", "two types are named `{name}`"),
-        )
-        .also(earlier.origin.name(), text!("第一个", "the first one"));
+        let message = text!("有两个类型都叫 `{name}`", "two types are named `{name}`");
+        let fault = Diagnostic::error(FaultCode::DuplicateType, ty.origin.name(), message)
+            .also(earlier.origin.name(), text!("第一个", "the first one"));
         let made = ty.def.body_of.is_some() || earlier.def.body_of.is_some();
         faults.push(if made {
             fault.note(text!("消息体和内嵌对象的类型以接口和各级键名命名；给内嵌对象写 `type_name` 可以改名", "bodies and inline objects are named after the operation and their keys; write `type_name` to rename an inline object"))
@@ -245,10 +240,8 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
                         "报文中的键名 `{key}` 在对象中出现两次",
                         "the wire key `{key}` occurs twice in the object"
                     );
-                    faults.push(
-                        Diagnostic::error(FaultCode::DuplicateWireKey, span, message)
-                            .also_first(*earlier.get()),
-                    );
+                    let fault = Diagnostic::error(FaultCode::DuplicateWireKey, span, message);
+                    faults.push(fault.also_first(*earlier.get()));
                     continue;
                 }
                 Slot::Vacant(slot) => {
@@ -261,10 +254,8 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
                     "`{key}` 是公共字段的键，不能写在消息体中",
                     "`{key}` is a key of the envelope and cannot be in a body"
                 );
-                faults.push(
-                    Diagnostic::error(FaultCode::EnvelopeKey, span, message)
-                        .also_declared(declared.origin.name()),
-                );
+                let fault = Diagnostic::error(FaultCode::EnvelopeKey, span, message);
+                faults.push(fault.also_declared(declared.origin.name()));
             }
         }
     }
@@ -316,9 +307,8 @@ pub(super) fn check_distinct<'n>(
                         "`{earlier}` and `{name}` are the same name in code"
                     )
                 };
-                faults.push(
-                    Diagnostic::error(FaultCode::DuplicateName, span, message).also_first(*at),
-                );
+                let fault = Diagnostic::error(FaultCode::DuplicateName, span, message);
+                faults.push(fault.also_first(*at));
             }
             None => {
                 first.insert(names::pascal(name), (name, span));

@@ -29,10 +29,11 @@ pub(super) fn check_said(draft: &Draft<'_>, faults: &mut Faults) {
                 "`accepted` 没有 `in`，也没有 `after`",
                 "`accepted` has neither `in` nor `after`"
             );
-            faults.push(
-                Diagnostic::error(FaultCode::NoPrecondition, node.span(), message)
-                    .note(text!("任何状态都可以时写 `in: any`；不清楚时不写 `accepted`", "write `in: any` if every state will do; leave `accepted` out if that is unknown")),
-            );
+            let fault = Diagnostic::error(FaultCode::NoPrecondition, node.span(), message);
+            faults.push(fault.note(text!(
+                "任何状态都可以时写 `in: any`；不清楚时不写 `accepted`",
+                "write `in: any` if every state will do; leave `accepted` out if that is unknown"
+            )));
         }
     }
 }

@@ -169,11 +169,8 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
                 .of(OPERATION.deprecated.of(operation.origin.node));
             let span = node.map_or(operation.origin.name(), Node::span);
             let message = text!("接口不能由自己替代", "an operation cannot replace itself");
-            faults.push(Diagnostic::error(
-                FaultCode::UnknownOperation,
-                span,
-                message,
-            ));
+            let fault = Diagnostic::error(FaultCode::UnknownOperation, span, message);
+            faults.push(fault);
         }
     }
 }

@@ -49,10 +49,8 @@ pub(super) fn check_errors(draft: &Draft<'_>, faults: &mut Faults) {
                     "{code} 在这个列表中出现两次",
                     "{code} occurs twice in this list"
                 );
-                faults.push(
-                    Diagnostic::error(FaultCode::DuplicateItem, node.span(), message)
-                        .also(earlier.span(), text!("第一次在这里", "first here")),
-                );
+                let fault = Diagnostic::error(FaultCode::DuplicateItem, node.span(), message);
+                faults.push(fault.also(earlier.span(), text!("第一次在这里", "first here")));
             }
         }
     }

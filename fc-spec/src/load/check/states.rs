@@ -133,10 +133,13 @@ pub(super) fn check_reached(draft: &Draft<'_>, faults: &mut Faults) {
                     "no value leads to `{value}`",
                     value = value.name
                 );
-                faults.push(
-                    Diagnostic::error(FaultCode::UnreachedState, part.origin.name(), message)
-                        .note(text!("过程由它开始时写 `start: true`，否则在某个取值的 `then:` 中写上它", "write `start: true` if the process begins with it, or name it in the `then:` of another value")),
+                let span = part.origin.name();
+                let note = text!(
+                    "过程由它开始时写 `start: true`，否则在某个取值的 `then:` 中写上它",
+                    "write `start: true` if the process begins with it, or name it in the `then:` of another value"
                 );
+                let fault = Diagnostic::error(FaultCode::UnreachedState, span, message);
+                faults.push(fault.note(note));
             }
         }
     }

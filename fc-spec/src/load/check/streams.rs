@@ -21,10 +21,8 @@ pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
                 "`content` 和 `body` 不能同时使用",
                 "`content` and `body` cannot be combined"
             );
-            faults.push(
-                Diagnostic::error(FaultCode::StreamContent, span, message)
-                    .also(body.key.span(), text!("`body` 在这里", "`body` is here")),
-            );
+            let fault = Diagnostic::error(FaultCode::StreamContent, span, message);
+            faults.push(fault.also(body.key.span(), text!("`body` 在这里", "`body` is here")));
         } else if text.ends_with("/json") {
             let message = text!(
                 "JSON 应写在 `body` 中，不写媒体类型",

@@ -24,12 +24,11 @@ pub(super) fn check_unused(draft: &Draft<'_>, faults: &mut Faults) {
                 "the type `{name}` is not used",
                 name = ty.def.name
             );
-            faults.push(
-                Diagnostic::error(FaultCode::UnusedType, ty.origin.name(), message).note(text!(
-                    "在消息体中用到它，或将它删除",
-                    "use it in a body, or delete it"
-                )),
-            );
+            let fault = Diagnostic::error(FaultCode::UnusedType, ty.origin.name(), message);
+            faults.push(fault.note(text!(
+                "在消息体中用到它，或将它删除",
+                "use it in a body, or delete it"
+            )));
         }
     }
 }

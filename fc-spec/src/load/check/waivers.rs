@@ -17,11 +17,12 @@ pub(super) fn check_ids(draft: &Draft<'_>, faults: &mut Faults) {
                 "`{id}` is not the number of a finding",
                 id = item.id
             );
-            faults.push(
-                Diagnostic::error(FaultCode::BadWaiver, origin.name(), message).note(
-                    text!("写 `fcproto diff` 或 `fcproto lint` 打印的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`", "write the rule and fingerprint that `fcproto diff` or `fcproto lint` prints, such as `FC0725-1a2b3c4d5e6f`"),
-                ),
+            let note = text!(
+                "写 `fcproto diff` 或 `fcproto lint` 打印的规则号加指纹，例如 `FC0725-1a2b3c4d5e6f`",
+                "write the rule and fingerprint that `fcproto diff` or `fcproto lint` prints, such as `FC0725-1a2b3c4d5e6f`"
             );
+            let fault = Diagnostic::error(FaultCode::BadWaiver, origin.name(), message);
+            faults.push(fault.note(note));
         }
     }
 }

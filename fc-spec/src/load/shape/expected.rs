@@ -24,16 +24,13 @@ pub(super) fn wrong_kind(expected: &Text, node: Node<'_>, at: Span, faults: &mut
     if node.ends_file() {
         faults.lose();
     }
-    let fault = Diagnostic::error(
-        FaultCode::WrongKind,
-        span,
-        text!(
-            "应为{expected}，实际为{found}",
-            "expected {expected}, found {found}",
-            found = node.describe(),
-            expected = expected.clone().spaced()
-        ),
+    let message = text!(
+        "应为{expected}，实际为{found}",
+        "expected {expected}, found {found}",
+        found = node.describe(),
+        expected = expected.clone().spaced()
     );
+    let fault = Diagnostic::error(FaultCode::WrongKind, span, message);
     faults.push(
         if node.is_null() && expected.en.starts_with("a mapping from") {
             fault.note(text!("没有内容时写 `{{}}`", "write `{{}}` if it is empty"))

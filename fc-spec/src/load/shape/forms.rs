@@ -55,29 +55,27 @@ impl Shape<'_> {
                 "`{name}` 是字段完整写法的开头，所以不会当作报文中的键名",
                 "`{name}` starts the long form of a field, so it is not read as a wire key"
             );
-            self.faults.push(
-                Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message).note(text!("把外层对象写成 `{{ fields: {{ {name}: … }} }}`；`fields:` 之下都是报文中的键名", "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key")),
+            let remedy = text!(
+                "把外层对象写成 `{{ fields: {{ {name}: … }} }}`；`fields:` 之下都是报文中的键名",
+                "write the enclosing object as `{{ fields: {{ {name}: … }} }}`; below `fields:` every key is a wire key"
             );
+            let fault = Diagnostic::error(FaultCode::MarkerAsKey, marker.key.span(), message);
+            self.faults.push(fault.note(remedy));
             return;
         }
         if let Some((second, _)) = marks.next() {
             self.faults.hide(node.span());
-            self.faults.push(
-                Diagnostic::error(
-                    FaultCode::TwoForms,
-                    second.key.span(),
-                    text!(
-                        "`{first}` 和 `{second}` 不能同时使用",
-                        "`{first}` and `{second}` cannot be combined",
-                        first = first.name(),
-                        second = second.name()
-                    ),
-                )
-                .also(
-                    first.key.span(),
-                    text!("这里已经定义了字段", "this already defines the field"),
-                ),
+            let message = text!(
+                "`{first}` 和 `{second}` 不能同时使用",
+                "`{first}` and `{second}` cannot be combined",
+                first = first.name(),
+                second = second.name()
             );
+            let fault = Diagnostic::error(FaultCode::TwoForms, second.key.span(), message);
+            self.faults.push(fault.also(
+                first.key.span(),
+                text!("这里已经定义了字段", "this already defines the field"),
+            ));
             return;
         }
         self.map(table, node, at);

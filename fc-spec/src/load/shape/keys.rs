@@ -161,11 +161,8 @@ fn unknown_key(table: &Table, entry: Entry<'_>, free: &[&str]) -> Diagnostic {
         );
     }
     let (zh, en) = (table.name_zh, table.name);
-    let fault = Diagnostic::error(
-        FaultCode::UnknownKey,
-        span,
-        text!("“{zh}”没有键 `{name}`", "`{name}` is not a key of the {en}"),
-    );
+    let message = text!("“{zh}”没有键 `{name}`", "`{name}` is not a key of the {en}");
+    let fault = Diagnostic::error(FaultCode::UnknownKey, span, message);
     if entry.value.is_null() {
         return fault.note(text!(
             "在 `{{ }}` 中逗号会结束文本；如果这是文本的后半部分，请给文本加上引号",

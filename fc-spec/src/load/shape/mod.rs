@@ -159,15 +159,13 @@ impl Shape<'_> {
         }
         self.faults.extend(stray.map(misplaced_entry));
         if count < min {
-            self.faults.push(Diagnostic::error(
-                FaultCode::ListLength,
-                node.span(),
-                text!(
-                    "应至少 {min} 项，实际为 {count} 项",
-                    "expected at least {min} {entries}, found {count}",
-                    entries = if min == 1 { "entry" } else { "entries" }
-                ),
-            ));
+            let message = text!(
+                "应至少 {min} 项，实际为 {count} 项",
+                "expected at least {min} {entries}, found {count}",
+                entries = if min == 1 { "entry" } else { "entries" }
+            );
+            let fault = Diagnostic::error(FaultCode::ListLength, node.span(), message);
+            self.faults.push(fault);
         }
     }
 
@@ -184,9 +182,8 @@ impl Shape<'_> {
                     "一项的键分成了两项",
                     "the keys of one item are in two items"
                 );
-                let fault = Diagnostic::error(FaultCode::SplitItem, second.span(), message);
                 self.faults.push(
-                    fault
+                    Diagnostic::error(FaultCode::SplitItem, second.span(), message)
                         .label(text!(
                             "这些键属于上面一项",
                             "these keys belong to the item above"
@@ -211,15 +208,13 @@ impl Shape<'_> {
             } else {
                 text!("应至少 {min} 项", "at least {min}")
             };
-            self.faults.push(Diagnostic::error(
-                FaultCode::ListLength,
-                node.span(),
-                text!(
-                    "{expected}，实际为 {count} 项",
-                    "expected {expected}, found {count}",
-                    expected = expected
-                ),
-            ));
+            let message = text!(
+                "{expected}，实际为 {count} 项",
+                "expected {expected}, found {count}",
+                expected = expected
+            );
+            let fault = Diagnostic::error(FaultCode::ListLength, node.span(), message);
+            self.faults.push(fault);
         }
     }
 }
@@ -276,10 +271,8 @@ fn check_repeated(items: Items<'_>, faults: &mut Faults) {
                 "`{text}` 在这个列表中出现两次",
                 "`{text}` occurs twice in this list"
             );
-            faults.push(
-                Diagnostic::error(FaultCode::DuplicateItem, item.span(), message)
-                    .also(earlier, text!("第一次在这里", "first here")),
-            );
+            let fault = Diagnostic::error(FaultCode::DuplicateItem, item.span(), message);
+            faults.push(fault.also(earlier, text!("第一次在这里", "first here")));
         }
     }
 }
@@ -304,13 +297,12 @@ fn check_type(node: Node<'_>, at: Span, faults: &mut Faults) {
         wrong_kind(&text!("类型", "a type"), node, at, faults);
     } else if scalar::field_type(node).is_none() {
         faults.hide(node.span());
-        let fault = Diagnostic::error(
-            FaultCode::BadType,
-            node.span(),
-            text!("类型的写法不对", "this is not a valid type"),
+        let message = text!("类型的写法不对", "this is not a valid type");
+        let remedy = text!(
+            "类型可以是内置类型，例如 `u8`，也可以是已声明的类型名；`[T]` 表示 `T` 的列表；最后加 `?` 表示可选字段",
+            "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of `T`; `?` at the very end marks an optional field"
         );
-        faults.push(fault.note(
-            text!("类型可以是内置类型，例如 `u8`，也可以是已声明的类型名；`[T]` 表示 `T` 的列表；最后加 `?` 表示可选字段", "a type is a built-in such as `u8` or the name of a declared type; `[T]` is a list of `T`; `?` at the very end marks an optional field"),
-        ));
+        let fault = Diagnostic::error(FaultCode::BadType, node.span(), message);
+        faults.push(fault.note(remedy));
     }
 }

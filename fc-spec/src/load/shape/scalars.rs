@@ -99,14 +99,11 @@ fn leading_zero(text: &str, span: Span, wanted: Wanted) -> Diagnostic {
     let digits = if digits.is_empty() { "0" } else { digits };
     let sign = if text.starts_with('-') { "-" } else { "" };
     let number = format!("{sign}{digits}");
-    let fault = Diagnostic::error(
-        FaultCode::LeadingZero,
-        span,
-        text!(
-            "有的 YAML 解析器把 `{text}` 当成八进制",
-            "some YAML parsers read `{text}` as octal"
-        ),
+    let message = text!(
+        "有的 YAML 解析器把 `{text}` 当成八进制",
+        "some YAML parsers read `{text}` as octal"
     );
+    let fault = Diagnostic::error(FaultCode::LeadingZero, span, message);
     match wanted {
         Wanted::Number => fault.fix(span, number, text!("去掉前导零", "remove the zeros")),
         Wanted::Text => fault.quote(text),
@@ -258,11 +255,8 @@ fn bad_unit(text: &str, span: Span) -> Diagnostic {
 
 /// Returns the error for a number, with a fix if it is a number in another language.
 fn bad_number(text: &str, span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(
-        FaultCode::BadNumber,
-        span,
-        text!("`{text}` 不是数值", "`{text}` is not a number"),
-    );
+    let message = text!("`{text}` 不是数值", "`{text}` is not a number");
+    let fault = Diagnostic::error(FaultCode::BadNumber, span, message);
     match number_of(text) {
         Some(number) => fault.write(number),
         None => fault,
@@ -301,11 +295,8 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
     let text = node.as_str().unwrap_or_default();
     match scalar::int(node) {
         None => {
-            let fault = Diagnostic::error(
-                FaultCode::BadInteger,
-                node.span(),
-                text!("`{text}` 不是整数", "`{text}` is not an integer"),
-            );
+            let message = text!("`{text}` 不是整数", "`{text}` is not an integer");
+            let fault = Diagnostic::error(FaultCode::BadInteger, node.span(), message);
             let better = number_of(text).filter(|number| scalar::int_text(number).is_some());
             Some(match better {
                 _ if node.as_plain().is_none() && scalar::int_text(text).is_some() => {
@@ -351,11 +342,8 @@ fn bad_bool(text: &str, style: Style, span: Span) -> Diagnostic {
 
 /// Returns the error for a date, with a fix if it has another common format.
 fn bad_date(text: &str, span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(
-        FaultCode::BadDate,
-        span,
-        text!("`{text}` 不是日期", "`{text}` is not a date"),
-    );
+    let message = text!("`{text}` 不是日期", "`{text}` is not a date");
+    let fault = Diagnostic::error(FaultCode::BadDate, span, message);
     let parts = text.trim().split(['-', '/', '.']);
     let parts: Vec<_> = parts.map(|part| format!("{part:0>2}")).collect();
     let date = parts.join("-");
@@ -369,11 +357,8 @@ fn bad_date(text: &str, span: Span) -> Diagnostic {
 }
 
 fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(
-        FaultCode::BadCode,
-        span,
-        text!("`{text}` 不是功能码", "`{text}` is not a valid code"),
-    );
+    let message = text!("`{text}` 不是功能码", "`{text}` is not a valid code");
+    let fault = Diagnostic::error(FaultCode::BadCode, span, message);
     let digits = text
         .strip_prefix("0x")
         .or_else(|| text.strip_prefix("0X"))
@@ -391,14 +376,11 @@ fn bad_code(text: &str, style: Style, span: Span) -> Diagnostic {
 }
 
 fn bad_name(text: &str, span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(
-        FaultCode::BadName,
-        span,
-        text!(
-            "`{text}` 不是 snake_case 名称",
-            "`{text}` is not a snake_case name"
-        ),
+    let message = text!(
+        "`{text}` 不是 snake_case 名称",
+        "`{text}` is not a snake_case name"
     );
+    let fault = Diagnostic::error(FaultCode::BadName, span, message);
     let better = names::snake(text);
     if names::is_snake(&better) {
         fault.write(better)
@@ -408,14 +390,11 @@ fn bad_name(text: &str, span: Span) -> Diagnostic {
 }
 
 fn bad_type_name(text: &str, span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(
-        FaultCode::BadTypeName,
-        span,
-        text!(
-            "`{text}` 不是 PascalCase 名称",
-            "`{text}` is not a PascalCase name"
-        ),
+    let message = text!(
+        "`{text}` 不是 PascalCase 名称",
+        "`{text}` is not a PascalCase name"
     );
+    let fault = Diagnostic::error(FaultCode::BadTypeName, span, message);
     let better = names::pascal(&names::snake(text));
     if names::is_pascal(&better) {
         fault.write(better)
@@ -428,11 +407,8 @@ fn bad_type_name(text: &str, span: Span) -> Diagnostic {
 }
 
 fn bad_word(text: &str, words: &[Meaning], span: Span) -> Diagnostic {
-    let fault = Diagnostic::error(
-        FaultCode::BadWord,
-        span,
-        text!("这里不能写 `{text}`", "`{text}` is not allowed here"),
-    );
+    let message = text!("这里不能写 `{text}`", "`{text}` is not allowed here");
+    let fault = Diagnostic::error(FaultCode::BadWord, span, message);
     let near = nearest(text, words.iter().map(|(word, ..)| *word));
     let note = text!(
         "可以写：{words}",
