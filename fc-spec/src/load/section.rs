@@ -157,17 +157,17 @@ fn drop_repeated(sections: &mut Vec<Section<'_>>, faults: &mut Faults) {
             return true;
         }
         let span = section.origin.name();
-        let Some(earlier) = first.get(section.name) else {
-            first.insert(section.name, span);
+        let earlier = *first.entry(section.name).or_insert(span);
+        if earlier == span {
             return true;
-        };
+        }
         let message = text!(
             "`{name}` 定义了两次",
             "`{name}` is defined twice",
             name = section.name
         );
         let fault = Diagnostic::error(FaultCode::SectionTwice, span, message);
-        faults.push(fault.also(*earlier, text!("首次定义在这里", "first defined here")));
+        faults.push(fault.also(earlier, text!("首次定义在这里", "first defined here")));
         false
     });
 }

@@ -8,7 +8,6 @@ use crate::names;
 use crate::source::Span;
 use crate::syntax::Node;
 use crate::text;
-use std::collections::hash_map::Entry as Slot;
 use std::collections::{HashMap, HashSet};
 
 /// Checks that each file has its own group.
@@ -46,21 +45,14 @@ pub(super) fn check_operations(draft: &Draft<'_>, faults: &mut Faults) {
                 ),
             ));
         }
-        match first.get(name) {
-            Some(earlier) => faults.push(
-                Diagnostic::error(
-                    FaultCode::DuplicateOperation,
-                    span,
-                    text!(
-                        "有两个接口都叫 `{name}`",
-                        "two operations are named `{name}`"
-                    ),
-                )
-                .also_first(*earlier),
-            ),
-            None => {
-                first.insert(name, span);
-            }
+        let earlier = *first.entry(name).or_insert(span);
+        if earlier != span {
+            let message = text!(
+                "有两个接口都叫 `{name}`",
+                "two operations are named `{name}`"
+            );
+            let fault = Diagnostic::error(FaultCode::DuplicateOperation, span, message);
+            faults.push(fault.also_first(earlier));
         }
     }
 }
@@ -162,7 +154,8 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 }
                 continue;
             }
-            if let Some((earlier, at)) = first.get(field.name.as_str()) {
+            let (earlier, at) = *first.entry(&field.name).or_insert((field, span));
+            if at != span {
                 let message = text!(
                     "`{first}` 和 `{second}` 在代码中都叫 `{name}`",
                     "`{first}` and `{second}` are both named `{name}` in code",
@@ -172,11 +165,9 @@ pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
                 );
                 faults.push(
                     Diagnostic::error(FaultCode::DuplicateFieldName, span, message)
-                        .also_first(*at)
+                        .also_first(at)
                         .note(text!("给其中一个写上 `name`", "give one of them a `name`")),
                 );
-            } else {
-                first.insert(&field.name, (field, span));
             }
         }
     }
@@ -193,15 +184,12 @@ pub(super) fn hidden(wire: &str, span: Span) -> Option<Diagnostic> {
 
 /// Returns the error for a wire name that yields no name in code.
 pub(super) fn unusable(wire: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(
-        FaultCode::UnusableName,
-        span,
-        text!(
-            "从 `{wire}` 得不出代码中的名称",
-            "no name in code can be derived from `{wire}`"
-        ),
-    )
-    .note(text!("给它写上 `name`", "give it a `name`"))
+    let message = text!(
+        "从 `{wire}` 得不出代码中的名称",
+        "no name in code can be derived from `{wire}`"
+    );
+    let fault = Diagnostic::error(FaultCode::UnusableName, span, message);
+    fault.note(text!("给它写上 `name`", "give it a `name`"))
 }
 
 /// Checks that a wire key or alternative spelling occurs once in a struct, and not in the envelope of the same object.
@@ -234,19 +222,15 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
                 continue;
             }
             faults.extend(hidden(key, span));
-            match first.entry(key) {
-                Slot::Occupied(earlier) => {
-                    let message = text!(
-                        "报文中的键名 `{key}` 在对象中出现两次",
-                        "the wire key `{key}` occurs twice in the object"
-                    );
-                    let fault = Diagnostic::error(FaultCode::DuplicateWireKey, span, message);
-                    faults.push(fault.also_first(*earlier.get()));
-                    continue;
-                }
-                Slot::Vacant(slot) => {
-                    slot.insert(span);
-                }
+            let earlier = *first.entry(key).or_insert(span);
+            if earlier != span {
+                let message = text!(
+                    "报文中的键名 `{key}` 在对象中出现两次",
+                    "the wire key `{key}` occurs twice in the object"
+                );
+                let fault = Diagnostic::error(FaultCode::DuplicateWireKey, span, message);
+                faults.push(fault.also_first(earlier));
+                continue;
             }
             let declared = envelope.iter().find(|field| field.item.wire == key);
             if let Some(declared) = declared {
@@ -293,26 +277,22 @@ pub(super) fn check_distinct<'n>(
         if name.is_empty() {
             continue;
         }
-        match first.get(&names::pascal(name)) {
-            Some((earlier, at)) => {
-                let message = if *earlier == name {
-                    text!(
-                        "有两个{what}都叫 `{name}`",
-                        "two {what} are named `{name}`",
-                        what = what
-                    )
-                } else {
-                    text!(
-                        "`{earlier}` 和 `{name}` 在代码中是同一个名称",
-                        "`{earlier}` and `{name}` are the same name in code"
-                    )
-                };
-                let fault = Diagnostic::error(FaultCode::DuplicateName, span, message);
-                faults.push(fault.also_first(*at));
-            }
-            None => {
-                first.insert(names::pascal(name), (name, span));
-            }
+        let (earlier, at) = *first.entry(names::pascal(name)).or_insert((name, span));
+        if at != span {
+            let message = if earlier == name {
+                text!(
+                    "有两个{what}都叫 `{name}`",
+                    "two {what} are named `{name}`",
+                    what = what
+                )
+            } else {
+                text!(
+                    "`{earlier}` 和 `{name}` 在代码中是同一个名称",
+                    "`{earlier}` and `{name}` are the same name in code"
+                )
+            };
+            let fault = Diagnostic::error(FaultCode::DuplicateName, span, message);
+            faults.push(fault.also_first(at));
         }
     }
 }

@@ -138,21 +138,15 @@ impl Shape<'_> {
             if let (Kind::Int { .. } | Kind::Scalar, Some(number)) =
                 (key.form(), scalar::int(entry.key))
             {
-                match numbers.get(&number) {
-                    Some(first) => self.faults.push(
-                        Diagnostic::error(
-                            FaultCode::DuplicateNumber,
-                            entry.key.span(),
-                            text!(
-                                "{number} 出现两次，写法不同",
-                                "{number} occurs twice, written in two ways"
-                            ),
-                        )
-                        .also_first(*first),
-                    ),
-                    None => {
-                        numbers.insert(number, entry.key.span());
-                    }
+                let span = entry.key.span();
+                let first = *numbers.entry(number).or_insert(span);
+                if first != span {
+                    let message = text!(
+                        "{number} 出现两次，写法不同",
+                        "{number} occurs twice, written in two ways"
+                    );
+                    let fault = Diagnostic::error(FaultCode::DuplicateNumber, span, message);
+                    self.faults.push(fault.also_first(first));
                 }
             }
             self.kind(value, entry.value, entry.key.span());
