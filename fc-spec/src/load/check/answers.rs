@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{ANSWER, COMMAND, FILE, OPERATION, REPORT, SOURCE};
 use crate::language::scalar::small_int;
 use crate::load::draft::{Draft, Sourced};
-use crate::model::{BodyState, Direction, Fact, Kind, Operation};
+use crate::model::{BodyState, Fact, Kind, Operation};
 use crate::names::is_conflict_id;
 use crate::source::Span;
 use crate::text;
@@ -18,64 +18,46 @@ pub(super) fn check_lost(draft: &Draft<'_>, faults: &mut Faults) {
             .lost
             .items(OPERATION.source.of(operation.origin.node))
         {
-            let item = &operation.item;
-            let origin = operation.origin;
-            let Some(what) = node.as_str().and_then(Fact::named) else {
+            let (item, origin) = (&operation.item, operation.origin);
+            let Some(fact) = node.as_str().and_then(Fact::named) else {
                 continue;
             };
-            let (state, stated_at, remedy) = match what {
-                Fact::Code => (
-                    item.code.state,
-                    origin.key_at(OPERATION.code),
-                    text!(
-                        "改写为 `unassigned`，或 `{{ value: …, state: inferred }}`",
-                        "write `unassigned`, or `{{ value: …, state: inferred }}`"
-                    ),
-                ),
-                Fact::Request if item.kind() != Kind::Stream => (
-                    item.body_state(Direction::Request),
-                    match item.kind() {
-                        Kind::Report => origin.key_at(REPORT.body),
-                        _ => origin.key_at(COMMAND.request),
-                    },
-                    text!(
-                        "改写为 `request_state: inferred` 或 `open`",
-                        "write `request_state: inferred` or `open`"
-                    ),
-                ),
-                Fact::Response if item.kind() != Kind::Stream => (
-                    item.body_state(Direction::Response),
-                    origin.key_at(COMMAND.response),
-                    text!(
-                        "改写为 `response_state: inferred` 或 `open`",
-                        "write `response_state: inferred` or `open`"
-                    ),
-                ),
+            let what = fact.name();
+            let stated_at = match (fact, item.kind()) {
+                (Fact::Code, _) => origin.key_at(OPERATION.code),
+                (Fact::Request, Kind::Command) => origin.key_at(COMMAND.request),
+                (Fact::Request, Kind::Report) => origin.key_at(REPORT.body),
+                (Fact::Response, Kind::Command | Kind::Report) => origin.key_at(COMMAND.response),
                 _ => continue,
             };
+            let mut states = [OPERATION.request_state, OPERATION.response_state].into_iter();
+            let state = states.find(|key| key.name.starts_with(what));
             // An unreadable state key has its own error.
-            let is_said = [OPERATION.request_state.name, OPERATION.response_state.name];
-            let is_said = is_said
-                .iter()
-                .any(|key| key.starts_with(what.name()) && origin.node.entry(key).is_some());
-            if state == BodyState::Stated && !is_said {
-                let what = what.name();
-                let message = text!(
-                    "这里注明源文档缺失 {what}",
-                    "the {what} is marked as missing from the source document"
-                );
-                faults.push(
-                    Diagnostic::error(FaultCode::LostButStated, node.span(), message)
-                        .also(
-                            stated_at,
-                            text!(
-                                "这里却按源文档写明的内容书写",
-                                "but it is marked as stated here"
-                            ),
-                        )
-                        .note(remedy),
-                );
+            let is_said = state.is_some_and(|key| key.of(origin.node).is_some());
+            if is_said || item.fact_state(fact) != Some(BodyState::Stated) {
+                continue;
             }
+            let message = text!(
+                "这里注明源文档缺失 {what}",
+                "the {what} is marked as missing from the source document"
+            );
+            let said = text!(
+                "这里却按源文档写明的内容书写",
+                "but it is marked as stated here"
+            );
+            let remedy = match state {
+                Some(key) => text!(
+                    "改写为 `{key}: inferred` 或 `open`",
+                    "write `{key}: inferred` or `open`",
+                    key = key.name
+                ),
+                None => text!(
+                    "改写为 `unassigned`，或 `{{ value: …, state: inferred }}`",
+                    "write `unassigned`, or `{{ value: …, state: inferred }}`"
+                ),
+            };
+            let fault = Diagnostic::error(FaultCode::LostButStated, node.span(), message);
+            faults.push(fault.also(stated_at, said).note(remedy));
         }
     }
 }

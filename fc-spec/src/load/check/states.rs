@@ -33,35 +33,31 @@ pub(super) fn check_order(draft: &Draft<'_>, faults: &mut Faults) {
             then.or(start.filter(|_| value.start))
         });
         let first = following.next();
+        let code = FaultCode::OrderWithoutStates;
         let fault = match (node, first) {
-            (Some(order), None) => Diagnostic::error(
-                FaultCode::OrderWithoutStates,
-                order.span(),
-                text!(
+            (Some(order), None) => {
+                let message = text!(
                     "枚举有 `order`，但没有取值写 `then`",
                     "the enum has `order`, but none of its values has `then`"
-                ),
-            )
-            .note(text!(
-                "在取值上写 `then:`，例如 `then: [running]`",
-                "write `then:` on a value, such as `then: [running]`"
-            )),
-            (None, Some(entry)) => Diagnostic::error(
-                FaultCode::OrderWithoutStates,
-                entry.key.span(),
-                text!(
+                );
+                let fault = Diagnostic::error(code, order.span(), message);
+                fault.note(text!(
+                    "在取值上写 `then:`，例如 `then: [running]`",
+                    "write `then:` on a value, such as `then: [running]`"
+                ))
+            }
+            (None, Some(entry)) => {
+                let message = text!(
                     "取值写了 `then` 或 `start`，但枚举没有 `order`",
                     "a value has `then` or `start`, but the enum has no `order`"
-                ),
-            )
-            .also(
-                ty.origin.name(),
-                text!("这个枚举", "this enum"),
-            )
-            .note(text!(
-                "在枚举上写 `order: normal`（正常顺序）或 `order: complete`（全部切换）",
-                "write `order: normal` (the normal order) or `order: complete` (all changes) on the enum"
-            )),
+                );
+                let fault = Diagnostic::error(code, entry.key.span(), message);
+                let fault = fault.also(ty.origin.name(), text!("这个枚举", "this enum"));
+                fault.note(text!(
+                    "在枚举上写 `order: normal`（正常顺序）或 `order: complete`（全部切换）",
+                    "write `order: normal` (the normal order) or `order: complete` (all changes) on the enum"
+                ))
+            }
             _ => continue,
         };
         faults.push(fault);
