@@ -6,7 +6,7 @@ use crate::language::ambiguous_scalar::{agreed_number, misread};
 use crate::language::grammar::unit::{self, UNITS};
 use crate::language::grammar::{FIELD, Kind};
 use crate::language::scalar;
-use crate::model::{Text, Type};
+use crate::model::Type;
 use crate::names;
 use crate::source::Span;
 use crate::syntax::width::{self, half_width, half_width_text};
@@ -70,27 +70,24 @@ fn misread_fault(node: Node<'_>, text: &str, wanted: Wanted) -> Option<Diagnosti
         other = other
     );
     let fault = Diagnostic::error(FaultCode::AmbiguousWord, span, message);
-    let number = agreed_number(text).or_else(|| number_of(text));
-    Some(match (number, wanted) {
-        (Some(number), Wanted::Number) => {
+    let number = match wanted {
+        Wanted::Number => agreed_number(text).or_else(|| number_of(text)),
+        Wanted::Either => agreed_number(text),
+        Wanted::Text => None,
+    };
+    Some(match number {
+        Some(number) => {
             let message = text!(
                 "改写为 `{number}`，所有解析器都当成数值",
                 "write `{number}`, which all of them read as a number"
             );
             fault.fix(span, number, message)
         }
-        (None, Wanted::Number) => fault.note(text!(
+        None if wanted == Wanted::Number => fault.note(text!(
             "把数值写成十进制或 `0x…`",
             "write the number in decimal or as `0x…`"
         )),
-        (Some(number), Wanted::Either) if agreed_number(text).is_some() => {
-            let message = text!(
-                "改写为 `{number}`，所有解析器都当成数值",
-                "write `{number}`, which all of them read as a number"
-            );
-            fault.fix(span, number, message)
-        }
-        _ => fault.quote(text),
+        None => fault.quote(text),
     })
 }
 
@@ -107,20 +104,15 @@ fn leading_zero(text: &str, span: Span, wanted: Wanted) -> Diagnostic {
     match wanted {
         Wanted::Number => fault.fix(span, number, text!("去掉前导零", "remove the zeros")),
         Wanted::Text => fault.quote(text),
-        Wanted::Either => fault
-            .fix(
-                span,
-                number,
-                text!(
-                    "如果是数值，去掉前导零",
-                    "remove the zeros if it is a number"
-                ),
-            )
-            .fix(
-                span,
-                quoted(text),
-                text!("如果是文本，加上引号", "quote it if it is text"),
-            ),
+        Wanted::Either => {
+            let bare = text!(
+                "如果是数值，去掉前导零",
+                "remove the zeros if it is a number"
+            );
+            let in_quotes = text!("如果是文本，加上引号", "quote it if it is text");
+            let fault = fault.fix(span, number, bare);
+            fault.fix(span, quoted(text), in_quotes)
+        }
     }
 }
 
@@ -185,7 +177,6 @@ fn full_width(node: Node<'_>, text: &str) -> Option<Diagnostic> {
 /// Returns the error for a scalar that is not a value of its kind.
 fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<Diagnostic> {
     let span = node.span();
-    let error = |code, message: Text| Diagnostic::error(code, span, message);
     match kind {
         Kind::Bool => scalar::bool(node)
             .is_none()
@@ -202,31 +193,26 @@ fn check_form(kind: &Kind, node: Node<'_>, text: &str, style: Style) -> Option<D
         Kind::Name => (!names::is_snake(text)).then(|| bad_name(text, span)),
         Kind::TypeName => (!names::is_pascal(text)).then(|| bad_type_name(text, span)),
         Kind::ConflictId => (!names::is_conflict_id(text)).then(|| {
-            error(
-                FaultCode::BadConflictId,
-                text!(
-                    "`{text}` 不是疑问的编号",
-                    "`{text}` is not the id of a conflict"
-                ),
-            )
-            .note(text!(
+            let message = text!(
+                "`{text}` 不是疑问的编号",
+                "`{text}` is not the id of a conflict"
+            );
+            Diagnostic::error(FaultCode::BadConflictId, span, message).note(text!(
                 "写 C 和至少三位数字，例如 C040",
                 "write C and at least three digits, such as C040"
             ))
         }),
         Kind::MediaType => (!names::is_media_type(text)).then(|| {
-            error(
-                FaultCode::BadMediaType,
-                text!("`{text}` 不是媒体类型", "`{text}` is not a media type"),
-            )
-            .note(text!(
+            let message = text!("`{text}` 不是媒体类型", "`{text}` is not a media type");
+            Diagnostic::error(FaultCode::BadMediaType, span, message).note(text!(
                 "写成小写的 `type/subtype`，例如 `image/png`",
                 "write `type/subtype` in lower case, such as `image/png`"
             ))
         }),
         Kind::Unit => (!UNITS.iter().any(|(unit, ..)| *unit == text)).then(|| bad_unit(text, span)),
         Kind::Word(words) => {
-            (!words.iter().any(|(word, ..)| *word == text)).then(|| bad_word(text, words, span))
+            let is_known = kind.word(text).is_some();
+            (!is_known).then(|| bad_word(text, words, span))
         }
         _ => None,
     }
@@ -306,15 +292,15 @@ fn check_int(node: Node<'_>, min: i128, max: i128) -> Option<Diagnostic> {
                 None => fault,
             })
         }
-        Some(value) if value < min || value > max => Some(Diagnostic::error(
-            FaultCode::IntegerRange,
-            node.span(),
-            text!(
+        Some(value) if (min..=max).contains(&value) => None,
+        Some(value) => {
+            let message = text!(
                 "{value} 不在 {min}..={max} 之内",
                 "{value} is outside {min}..={max}"
-            ),
-        )),
-        Some(_) => None,
+            );
+            let code = FaultCode::IntegerRange;
+            Some(Diagnostic::error(code, node.span(), message))
+        }
     }
 }
 
