@@ -3,9 +3,9 @@
 use super::expand::bodies;
 use super::frame::header_len;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
-use crate::language::grammar::{FRAME, Form, Key, LIMITS};
-use crate::load::draft::{Draft, Sourced, TypeDraft};
-use crate::model::{Example, Field, Limits, Text, Type, TypeShape};
+use crate::language::grammar::{FRAME, LIMITS};
+use crate::load::draft::{Draft, TypeDraft};
+use crate::model::{Example, Field, Type, TypeShape};
 use crate::text;
 use std::collections::HashMap;
 
@@ -50,8 +50,10 @@ pub(super) fn check_bodies(draft: &Draft<'_>, order: &[usize], faults: &mut Faul
             "报文嵌套 {levels} 层，超过这个上限",
             "messages of this spec are nested {levels} levels deep"
         );
-        let which = text!("嵌套最深的消息体", "the most deeply nested body");
-        faults.push(too_small(limits, LIMITS.json_depth, message, body, which));
+        let span = limits.origin.at(LIMITS.json_depth);
+        let fault = Diagnostic::error(FaultCode::LimitTooSmall, span, message);
+        let deepest = text!("嵌套最深的消息体", "the most deeply nested body");
+        faults.push(fault.also(body.origin.name(), deepest));
     }
     let Some((Extent { bytes, .. }, body)) = bodies.iter().max_by_key(|(it, _)| it.bytes) else {
         return;
@@ -62,13 +64,9 @@ pub(super) fn check_bodies(draft: &Draft<'_>, order: &[usize], faults: &mut Faul
             "报文的正文至少有 {bytes} 字节，超过这个上限",
             "messages of this spec have bodies of at least {bytes} bytes"
         );
-        faults.push(too_small(
-            limits,
-            LIMITS.inflated_bytes,
-            message,
-            body,
-            longest(),
-        ));
+        let span = limits.origin.at(LIMITS.inflated_bytes);
+        let fault = Diagnostic::error(FaultCode::LimitTooSmall, span, message);
+        faults.push(fault.also(body.origin.name(), longest()));
     }
     let header = draft.frame.as_ref().map_or(0, header_len);
     let header = u64::try_from(header).unwrap_or(u64::MAX);
@@ -79,25 +77,10 @@ pub(super) fn check_bodies(draft: &Draft<'_>, order: &[usize], faults: &mut Faul
             "不压缩时，报文的帧至少有 {frame} 字节，超过这个上限",
             "uncompressed messages of this spec have frames of at least {frame} bytes"
         );
-        faults.push(too_small(
-            limits,
-            LIMITS.frame_bytes,
-            message,
-            body,
-            longest(),
-        ));
+        let span = limits.origin.at(LIMITS.frame_bytes);
+        let fault = Diagnostic::error(FaultCode::LimitTooSmall, span, message);
+        faults.push(fault.also(body.origin.name(), longest()));
     }
-}
-
-fn too_small(
-    limits: &Sourced<'_, Limits>,
-    key: Key<impl Form>,
-    message: Text,
-    body: &TypeDraft<'_>,
-    which: Text,
-) -> Diagnostic {
-    Diagnostic::error(FaultCode::LimitTooSmall, limits.origin.at(key), message)
-        .also(body.origin.name(), which)
 }
 
 /// A lower bound for the JSON of a type, with the keys of its example.

@@ -98,15 +98,11 @@ pub(super) fn check_tables(draft: &Draft<'_>, faults: &mut Faults) {
 pub(super) fn check_types(draft: &Draft<'_>, faults: &mut Faults) {
     let mut repeated_operations = HashSet::new();
     for (index, ty) in draft.types.iter().enumerate() {
-        let Some(first) = draft.type_index.get(&ty.def.name) else {
+        let first = draft.type_index.get(&ty.def.name);
+        let first = first.filter(|first| **first != index);
+        let Some(earlier) = first.and_then(|first| draft.types.get(*first)) else {
             continue;
         };
-        let Some(earlier) = draft.types.get(*first) else {
-            continue;
-        };
-        if *first == index {
-            continue;
-        }
         // Operations with the same name have an error, which also covers the types made for them.
         if let (Some(body), Some(other)) = (&ty.def.body_of, &earlier.def.body_of)
             && body.operation == other.operation
