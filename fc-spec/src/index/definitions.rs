@@ -34,16 +34,11 @@ impl DefId {
         let parts = reference();
         let part = parts.iter().find(|part| part.id == self.kind);
         let kind = part.map_or(self.kind, |part| part.name.zh.as_str());
-        let name = match &self.owner {
-            Some(owner) => format!(" {owner}.{}", self.name),
-            None if self.name == self.kind => String::new(),
-            None => format!(" {}", self.name),
-        };
-        text!("{kind}{name}", "{self}")
+        let whole = self.to_string();
+        let name = whole.strip_prefix(self.kind).unwrap_or_default();
+        text!("{kind}{name}", "{whole}")
     }
-}
 
-impl DefId {
     /// Returns `true` for a type, declared or built from a body.
     #[must_use]
     pub fn is_type(&self) -> bool {
@@ -182,12 +177,8 @@ impl Definitions {
     /// Returns all things with this name. The name may include the owner: `Station.name`, `name`.
     pub fn named(&self, name: &str) -> impl Iterator<Item = (&DefId, &DefSite)> {
         self.iter().filter(move |(item, _)| {
-            let own = match &item.owner {
-                Some(owner) => name
-                    .strip_prefix(owner)
-                    .and_then(|rest| rest.strip_prefix('.')),
-                None => None,
-            };
+            let owner = item.owner.as_deref();
+            let own = owner.and_then(|owner| name.strip_prefix(owner)?.strip_prefix('.'));
             item.name == name || own == Some(&item.name)
         })
     }
