@@ -4,11 +4,11 @@ use super::Lowering;
 use super::available::available;
 use super::text::deprecation;
 use crate::language::grammar::{
-    CHOICE, COMMON, FIELD, FIELD_FORMS, ITEMS, NAMED_VARIANT, OBJECT, TEXT, both_languages as text,
+    CHOICE, COMMON, FIELD, ITEMS, NAMED_VARIANT, OBJECT, TEXT, both_languages as text,
 };
 use crate::language::scalar;
 use crate::load::draft::{Origin, Part, TypeDraft};
-use crate::load::shape::{lacks_form, misread_marker};
+use crate::load::shape::{lacks_form, marker, misread_marker};
 use crate::model::{
     Asked, BodyField, BodyState, Condition, Constraints, Example, Field, FieldDetails, OneOf,
     Pattern, StructRef, StructType, Subject, Text, Type, TypeDef, TypeRef, TypeShape, Variant,
@@ -167,6 +167,7 @@ impl<'a> Lowering<'a, '_> {
         };
         let misread = misread_marker(node).is_some() || lacks_form(node);
         let marker = marker(node).filter(|_| !misread);
+        let marker = marker.map(|(mark, _)| (mark.name(), mark.value));
         // A short form has no keys. Its mapping, if any, holds wire keys.
         let keys = marker.map(|_| node);
         let is_typed = marker.is_some_and(|(mark, _)| mark == FIELD.r#type.name);
@@ -251,12 +252,6 @@ impl<'a> Lowering<'a, '_> {
             _ => named,
         }
     }
-}
-
-/// Returns the key that marks the form of a field, and its value.
-fn marker(node: Node<'_>) -> Option<(&'static str, Node<'_>)> {
-    let mut forms = FIELD_FORMS.into_iter();
-    forms.find_map(|(mark, _)| Some((mark, node.get(mark)?)))
 }
 
 /// Returns the rarer keys of a field in the form of `mark`, if it has any. The shape check reports keys that do not

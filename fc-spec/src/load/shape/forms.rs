@@ -87,9 +87,7 @@ fn fits(kind: &Kind, node: Node<'_>) -> bool {
     match kind.form() {
         Kind::Code => scalar::code(node).is_some(),
         Kind::Int { .. } => scalar::int(node).is_some(),
-        Kind::Word(words) => node
-            .as_str()
-            .is_some_and(|text| words.iter().any(|(word, ..)| *word == text)),
+        words @ Kind::Word(_) => node.as_str().is_some_and(|it| words.word(it).is_some()),
         _ => true,
     }
 }
@@ -139,10 +137,13 @@ fn likely(
 /// Returns `true` for a field with the text of the long form but without a key that marks its form. Its keys are not
 /// wire keys.
 pub(in crate::load) fn lacks_form(node: Node<'_>) -> bool {
-    let has_form = FIELD_FORMS
-        .iter()
-        .any(|(mark, _)| node.entry(mark).is_some());
-    !has_form && has_text(node)
+    marker(node).is_none() && has_text(node)
+}
+
+/// Returns the key that marks the long form of a field, and the table of the form.
+pub(in crate::load) fn marker(node: Node<'_>) -> Option<(Entry<'_>, &'static Table)> {
+    let mut forms = FIELD_FORMS.into_iter();
+    forms.find_map(|(mark, table)| Some((node.entry(mark)?, table)))
 }
 
 /// Returns `true` if the node has a text that is not a type, like the long form of a field.
@@ -156,24 +157,17 @@ pub(in crate::load) fn misread_marker(node: Node<'_>) -> Option<Entry<'_>> {
     if has_text(node) {
         return None;
     }
-    let (marker, table) = FIELD_FORMS
-        .iter()
-        .find_map(|(mark, table)| Some((node.entry(mark)?, *table)))?;
-    let is_field = |value: Node<'_>| {
-        FIELD_FORMS
-            .iter()
-            .any(|(mark, _)| value.get(mark).is_some())
-    };
-    let is_misread = if marker.name() == FIELD.r#type.name {
-        marker.value.as_mapping().is_some()
+    let (mark, table) = marker(node)?;
+    let is_misread = if mark.name() == FIELD.r#type.name {
+        mark.value.as_mapping().is_some()
     } else {
-        let ty = FIELD.r#type.of(marker.value);
-        let text = TEXT.zh.of(marker.value).or(TEXT.en.of(marker.value));
+        let ty = FIELD.r#type.of(mark.value);
+        let text = TEXT.zh.of(mark.value).or(TEXT.en.of(mark.value));
         ty.is_some_and(|ty| ty.as_mapping().is_none()) && text.is_some()
     };
     // Only keys of the long form may follow the marker, but these are fields.
     let has_fields_beside = node
         .entries()
-        .any(|entry| table.key(entry.name()).is_none() && is_field(entry.value));
-    (is_misread || has_fields_beside).then_some(marker)
+        .any(|entry| table.key(entry.name()).is_none() && marker(entry.value).is_some());
+    (is_misread || has_fields_beside).then_some(mark)
 }

@@ -7,7 +7,7 @@ mod keys;
 mod scalars;
 mod stray;
 
-pub(super) use forms::{lacks_form, misread_marker};
+pub(super) use forms::{lacks_form, marker, misread_marker};
 pub(crate) use keys::check_keys;
 
 use super::texts;
