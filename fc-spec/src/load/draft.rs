@@ -8,9 +8,9 @@ use crate::language::Occurrence;
 use crate::language::grammar::{self, Form, Key};
 use crate::model::{
     Ack, Answer, ByteOrder, CallDefaults, Change, CodeRange, Conflict, Encoding, EnvelopeField,
-    FrameKind, Group, HeaderField, Languages, Limits, MissingSection, Operation, Partial, Protocol,
-    ResultCode, RetiredCode, StructType, Table, Term, Text, Transport, Type, TypeDef, TypeShape,
-    Waiver,
+    Field, FrameKind, Group, HeaderField, Languages, Limits, MissingSection, Operation, Partial,
+    Protocol, ResultCode, RetiredCode, StructType, Table, Term, Text, Transport, Type, TypeDef,
+    TypeShape, Waiver,
 };
 use crate::source::Span;
 use crate::syntax::{Entry, Node};
@@ -67,6 +67,17 @@ pub(crate) struct TypeDraft<'a> {
     pub origin: Origin<'a>,
     /// Places of the fields, values or variants.
     pub parts: Vec<Part<'a>>,
+}
+
+impl<'a> TypeDraft<'a> {
+    /// Returns the fields of a struct with their places. Other types have none.
+    pub fn fields(&self) -> impl Iterator<Item = (&Field, Part<'a>)> {
+        let fields = match &self.def.shape {
+            TypeShape::Struct(shape) => shape.fields.as_slice(),
+            TypeShape::Enum(_) | TypeShape::OneOf(_) => &[],
+        };
+        fields.iter().zip(self.parts.iter().copied())
+    }
 }
 
 /// The place of a field, value or variant.

@@ -4,7 +4,7 @@ use super::answer_scope::{Found, covered_facts};
 use super::draft::Draft;
 use super::process;
 use crate::language::grammar::REPORT;
-use crate::model::{BodyState, Example, Exchange, Field, Kind, KindRole, Subject, Type, TypeShape};
+use crate::model::{BodyState, Example, Exchange, Field, Subject, Type, TypeShape};
 
 /// Fills in ports, acknowledgements, states of reports, borrowed texts, the kind of each example and confirmed facts.
 pub(super) fn resolve(draft: &mut Draft<'_>) {
@@ -22,11 +22,7 @@ fn resolve_ports(draft: &mut Draft<'_>) {
         return;
     };
     for operation in &mut draft.operations {
-        let role = match operation.item.kind() {
-            Kind::Command => KindRole::Command,
-            Kind::Report => KindRole::Report,
-            Kind::Stream => KindRole::Stream,
-        };
+        let role = operation.item.kind().role();
         if let Some(kind) = frame.kinds.iter().find(|kind| kind.item.role == role) {
             operation.item.port = kind.item.port;
         }
@@ -52,10 +48,7 @@ fn resolve_acks(draft: &mut Draft<'_>) {
 fn resolve_texts(draft: &mut Draft<'_>) {
     let mut titles = Vec::new();
     for (at, ty) in draft.types.iter().enumerate() {
-        let TypeShape::Struct(shape) = &ty.def.shape else {
-            continue;
-        };
-        for (index, (field, part)) in shape.fields.iter().zip(&ty.parts).enumerate() {
+        for (index, (field, part)) in ty.fields().enumerate() {
             if let (true, Type::Named(named)) = (part.borrows_text, &field.ty)
                 && let Some(named) = draft.type_named(named.name())
             {

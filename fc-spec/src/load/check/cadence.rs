@@ -1,6 +1,5 @@
 //! Checks the cadence of reports.
 
-use super::iter::fields_of;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::grammar::{CADENCE, REPORT, STEP};
 use crate::load::draft::{Draft, Part, TypeDraft};
@@ -145,7 +144,7 @@ fn find<'d, 'a>(
     let mut keys = path.as_str()?.split('.').peekable();
     while let Some(key) = keys.next() {
         let structs = structs(draft, holder).into_iter();
-        let fields: Vec<_> = structs.flat_map(fields_of).collect();
+        let fields: Vec<_> = structs.flat_map(TypeDraft::fields).collect();
         let mut named = fields.iter().filter(|(field, _)| field.wire == key);
         let Some(&(field, part)) = named.next() else {
             if fields.iter().all(|(_, part)| !part.broken) {

@@ -136,7 +136,7 @@ fn questions<'d, 'a>(draft: &'d Draft<'a>) -> Vec<Question<'d, 'a>> {
         let node = part.origin.node;
         for condition in [FIELD.when, FIELD.unless] {
             for entry in condition.of(node).into_iter().flat_map(Node::entries) {
-                let mut beside = shape.fields.iter().zip(ty.parts.iter().copied());
+                let mut beside = ty.fields();
                 let asked = beside.find(|(field, _)| field.wire == entry.name());
                 if asked.is_none_or(|(_, part)| !part.broken) {
                     questions.push(Question {

@@ -1,7 +1,7 @@
 //! Iterates over the fields that most checks visit, with their places.
 
 use crate::load::draft::{Draft, Part, TypeDraft};
-use crate::model::{Field, Kind, Text, Type, TypeShape};
+use crate::model::{Field, Kind, Text, Type};
 use crate::text;
 
 /// Returns every field that is valid enough to check, with its place and its type.
@@ -9,20 +9,9 @@ pub(super) fn fields<'d, 'a>(
     draft: &'d Draft<'a>,
 ) -> impl Iterator<Item = (&'d TypeDraft<'a>, &'d Field, Part<'a>)> {
     draft.types.iter().flat_map(|ty| {
-        let sound = fields_of(ty).filter(|(_, part)| !part.broken);
+        let sound = ty.fields().filter(|(_, part)| !part.broken);
         sound.map(move |(field, part)| (ty, field, part))
     })
-}
-
-/// Returns the fields of a struct with their places. Other types have none.
-pub(super) fn fields_of<'d, 'a>(
-    ty: &'d TypeDraft<'a>,
-) -> impl Iterator<Item = (&'d Field, Part<'a>)> {
-    let fields = match &ty.def.shape {
-        TypeShape::Struct(shape) => shape.fields.as_slice(),
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => &[],
-    };
-    fields.iter().zip(ty.parts.iter().copied())
 }
 
 /// Returns the [`fields`] whose type is known. An unknown type has its own error.

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::{COMMON, FIELD, GROUP};
 use crate::load::draft::{Draft, Origin, Sourced};
-use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, Text, TypeShape};
+use crate::model::{BodyField, Direction, EnvelopeField, Field, Kind, Text};
 use crate::names;
 use crate::source::Span;
 use crate::syntax::Node;
@@ -137,11 +137,8 @@ fn reserved(span: Span, message: Text) -> Diagnostic {
 pub(super) fn check_fields(draft: &Draft<'_>, faults: &mut Faults) {
     let mut first: HashMap<&str, (&Field, Span)> = HashMap::new();
     for ty in &draft.types {
-        let TypeShape::Struct(shape) = &ty.def.shape else {
-            continue;
-        };
         first.clear();
-        for (field, part) in shape.fields.iter().zip(&ty.parts) {
+        for (field, part) in ty.fields() {
             let span = part.origin.name();
             if !names::is_snake(&field.name) {
                 // A malformed `name` has its own error.
@@ -195,22 +192,15 @@ pub(super) fn check_wire_keys(draft: &Draft<'_>, faults: &mut Faults) {
     let streams = operations.filter(|operation| operation.kind() == Kind::Stream);
     let streams: HashSet<&str> = streams.map(|stream| stream.name.as_str()).collect();
     for ty in &draft.types {
-        let TypeShape::Struct(shape) = &ty.def.shape else {
-            continue;
-        };
         first.clear();
         let body = ty.def.body_of.as_ref();
         // The frame of a stream has no envelope.
         let body = body.filter(|body| !streams.contains(body.operation.as_str()));
         let envelope = envelope_of(draft, body);
-        let keys = shape
-            .fields
-            .iter()
-            .zip(&ty.parts)
-            .flat_map(|(field, part)| {
-                std::iter::once((field.wire.as_str(), part.origin.name()))
-                    .chain(also(field, part.origin))
-            });
+        let keys = ty.fields().flat_map(|(field, part)| {
+            std::iter::once((field.wire.as_str(), part.origin.name()))
+                .chain(also(field, part.origin))
+        });
         for (key, span) in keys {
             if key.is_empty() {
                 let message = text!("报文中的键名不能为空", "a wire key cannot be empty");
