@@ -1,10 +1,9 @@
 //! Checks unknown and missing keys of a mapping.
 
+use super::stray::SECTIONS;
 use crate::diagnostic::{Diagnostic, FaultCode, Faults, nearest};
 use crate::language::Cursor;
-use crate::language::grammar::{
-    Command, Enum, FIELD_FORMS, OneOf, Report, Stream, Struct, TEXT, Table,
-};
+use crate::language::grammar::{Command, FIELD_FORMS, Report, Stream, TEXT, Table};
 use crate::model::Text;
 use crate::source::Span;
 use crate::syntax::width::half_width_text;
@@ -126,15 +125,8 @@ fn word_of(entry: Entry<'_>) -> Option<String> {
 pub(super) fn looks_like(node: Node<'_>) -> Option<&'static Table> {
     /// Fewer keys are too vague.
     const FEWEST: usize = 3;
-    let kinds = [
-        Command::TABLE,
-        Report::TABLE,
-        Stream::TABLE,
-        Enum::TABLE,
-        OneOf::TABLE,
-        Struct::TABLE,
-    ];
-    let mut fitting = kinds.into_iter().filter(|table| {
+    let tables = SECTIONS.iter().map(|(_, table)| *table);
+    let mut fitting = tables.filter(|table| {
         node.entries()
             .all(|entry| table.key(entry.name()).is_some())
     });
@@ -149,16 +141,13 @@ fn unknown_key(table: &Table, entry: Entry<'_>, free: &[&str]) -> Diagnostic {
         return slip;
     }
     if let Some(other) = owner_of_key(table, name) {
-        return Diagnostic::error(
-            FaultCode::MisplacedKey,
-            span,
-            text!(
-                "`{name}` 是“{other}”的键，不是“{this}”的键",
-                "`{name}` is a key of {other}, not of {this}",
-                other = article(other),
-                this = article(table)
-            ),
+        let message = text!(
+            "`{name}` 是“{other}”的键，不是“{this}”的键",
+            "`{name}` is a key of {other}, not of {this}",
+            other = article(other),
+            this = article(table)
         );
+        return Diagnostic::error(FaultCode::MisplacedKey, span, message);
     }
     let (zh, en) = (table.name_zh, table.name);
     let message = text!("“{zh}”没有键 `{name}`", "`{name}` is not a key of the {en}");

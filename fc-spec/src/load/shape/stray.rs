@@ -34,7 +34,7 @@ pub(super) fn misplaced(value: &Kind, node: Node<'_>) -> Option<&'static Table> 
 }
 
 /// The sections of operations and types, and the table of each.
-const SECTIONS: [(&str, &Table); 6] = [
+pub(super) const SECTIONS: [(&str, &Table); 6] = [
     (FILE.commands.name, Command::TABLE),
     (FILE.reports.name, Report::TABLE),
     (FILE.streams.name, Stream::TABLE),
