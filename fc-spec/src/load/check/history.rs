@@ -29,14 +29,11 @@ fn order(origin: Origin<'_>) -> Option<Diagnostic> {
     let is_later = (first.0, first.1) > (last.0, last.1)
         || ((first.0, first.1) == (last.0, last.1) && last.2 > 0 && first.2 > last.2);
     is_later.then(|| {
-        Diagnostic::error(
-            FaultCode::DatesOutOfOrder,
-            withdrawn.span(),
-            text!(
-                "弃用的时间早于加入的时间",
-                "the date of deprecation is earlier than the date of addition"
-            ),
-        )
-        .also(since.span(), text!("在这里加入", "added here"))
+        let message = text!(
+            "弃用的时间早于加入的时间",
+            "the date of deprecation is earlier than the date of addition"
+        );
+        Diagnostic::error(FaultCode::DatesOutOfOrder, withdrawn.span(), message)
+            .also(since.span(), text!("在这里加入", "added here"))
     })
 }

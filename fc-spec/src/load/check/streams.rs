@@ -2,18 +2,17 @@
 
 use crate::diagnostic::{Diagnostic, FaultCode, Faults};
 use crate::language::grammar::STREAM;
-use crate::load::draft::{Draft, Sourced};
-use crate::model::{Kind, Operation};
+use crate::load::draft::Draft;
+use crate::model::Kind;
 use crate::text;
 
 /// Checks that a frame carries bytes of a media type or a JSON object, not both.
 pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
-    for stream in streams(draft) {
+    let operations = draft.operations.iter();
+    for stream in operations.filter(|it| it.item.kind() == Kind::Stream) {
         let node = stream.origin.node;
-        let Some((text, span)) = STREAM.content.of(node).and_then(|content| {
-            let text = content.as_str()?;
-            Some((text, content.span()))
-        }) else {
+        let content = STREAM.content.of(node);
+        let Some((text, span)) = content.and_then(|it| Some((it.as_str()?, it.span()))) else {
             continue;
         };
         if let Some(body) = STREAM.body.entry(node) {
@@ -31,9 +30,4 @@ pub(super) fn check_content(draft: &Draft<'_>, faults: &mut Faults) {
             faults.push(Diagnostic::error(FaultCode::StreamContent, span, message));
         }
     }
-}
-
-fn streams<'d, 'a>(draft: &'d Draft<'a>) -> impl Iterator<Item = &'d Sourced<'a, Operation>> {
-    let operations = draft.operations.iter();
-    operations.filter(|operation| operation.item.kind() == Kind::Stream)
 }
