@@ -204,7 +204,7 @@ fn talks(lang: &str) {
     );
     for test in [
         "test every_sample_runs ... ok",
-        "test an_app_sets_the_light_and_is_told_of_it ... ok",
+        "test set_light_changes_the_light_and_is_reported ... ok",
     ] {
         assert!(said.contains(test), "{said}");
     }

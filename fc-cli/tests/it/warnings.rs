@@ -155,11 +155,11 @@ const SPECS: [(&str, &[&str], Changes); 14] = [
 
 const ENVELOPE: &str = "envelope:
   request:
-    sentAt: { type: \"timestamp_ms?\", role: time, example: 1767225600000, zh: 发送时间, en: When it was sent }
+    sentAt: { type: \"timestamp_ms?\", role: time, example: 1767225600000, zh: 发送时间, en: Time of sending }
   response:
-    sentAt: { type: \"timestamp_ms?\", role: time, example: 1767225600000, zh: 发送时间, en: When it was sent }
+    sentAt: { type: \"timestamp_ms?\", role: time, example: 1767225600000, zh: 发送时间, en: Time of sending }
     result: { type: i32, role: result_code, example: 0, zh: 结果码, en: Result code }
-    message: { type: \"string?\", role: result_text, example: 成功, zh: 结果说明, en: Result in words }
+    message: { type: \"string?\", role: result_text, example: 成功, zh: 结果说明, en: Result text }
 ";
 
 const ENCODINGS: &str = "  encodings:
