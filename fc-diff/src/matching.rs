@@ -28,16 +28,42 @@ impl<'m, T> Pair<'m, T> {
     }
 }
 
-/// Pairs the operations: by name, then by kind and code.
+/// Pairs the operations.
 pub(crate) fn operations<'m>(old: &'m Model, new: &'m Model) -> Vec<Pair<'m, Operation>> {
+    let by_name: HashMap<&str, &Operation> = new
+        .operations
+        .iter()
+        .map(|it| (it.name.as_str(), it))
+        .collect();
+    let old_names: HashSet<&str> = old.operations.iter().map(|it| it.name.as_str()).collect();
     let place = |it: &Operation| it.code.value.map(|code| (it.kind(), code));
-    align(
-        &old.operations,
-        &new.operations,
-        &[&|one, other| one.name == other.name, &|one, other| {
-            place(one).is_some() && place(one) == place(other)
-        }],
-    )
+    let unmatched = new
+        .operations
+        .iter()
+        .filter(|it| !old_names.contains(it.name.as_str()));
+    let mut by_code: HashMap<_, &Operation> =
+        unmatched.filter_map(|it| Some((place(it)?, it))).collect();
+    let mut renamed = HashSet::new();
+    let mut pairs = Vec::new();
+    for operation in &old.operations {
+        let found = by_name.get(operation.name.as_str()).copied();
+        let found = found.or_else(|| by_code.remove(&place(operation)?));
+        pairs.push(match found {
+            Some(found) => {
+                if found.name != operation.name {
+                    renamed.insert(found.name.as_str());
+                }
+                Pair::Both(operation, found)
+            }
+            None => Pair::Removed(operation),
+        });
+    }
+    let added = new
+        .operations
+        .iter()
+        .filter(|it| !old_names.contains(it.name.as_str()) && !renamed.contains(it.name.as_str()));
+    pairs.extend(added.map(Pair::Added));
+    pairs
 }
 
 /// Pairs the fields of an object: by key, then by a key in `also`, then by name.
