@@ -154,21 +154,25 @@ async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault
     Ok(())
 }
 
-/// Waits for the picture that the call for a map image has ordered. Its digest has been verified by
-/// the time it is here.
+/// Waits for the picture that the call for a map image has ordered, and skips frames of other streams. Its digest has
+/// been verified by the time it is here.
 async fn receive_picture(data: &DataConnection<Fc>, tour: &mut Tour) -> Result<(), Fault> {
-    let frame = tokio::time::timeout(PATIENCE, data.recv())
+    let picture = async {
+        loop {
+            let frame = data.recv().await?;
+            if frame.code == GetMapImageRequest::CODE {
+                return Ok::<_, Fault>(frame);
+            }
+        }
+    };
+    let frame = tokio::time::timeout(PATIENCE, picture)
         .await
         .map_err(|_| "no picture came")??;
-    let outcome = if frame.code == GetMapImageRequest::CODE {
-        let (size, id) = (frame.data.len(), frame.id);
-        Ok(tour.lang.pick(
-            format!("收到 {size} 字节，msgId {id}，MD5 一致"),
-            format!("received {size} bytes, msgId {id}, MD5 verified"),
-        ))
-    } else {
-        Err(format!("unexpected picture of 0x{:04X}", frame.code))
-    };
+    let (size, id) = (frame.data.len(), frame.id);
+    let outcome = Ok(tour.lang.pick(
+        format!("收到 {size} 字节，msgId {id}，MD5 一致"),
+        format!("received {size} bytes, msgId {id}, MD5 verified"),
+    ));
     tour.add(frame.code, tour.lang.pick("数据流", "stream"), outcome);
     Ok(())
 }
