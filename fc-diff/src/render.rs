@@ -201,7 +201,7 @@ fn waived(waiver: &Waiver, lang: Lang) -> String {
 
 /// A finding with stable keys for other programs.
 #[derive(Serialize)]
-struct Shown<'f> {
+struct JsonFinding<'f> {
     rule: &'static str,
     number: u8,
     subject: &'f str,
@@ -216,7 +216,7 @@ struct Shown<'f> {
 }
 
 fn json(findings: &[Finding], lang: Lang) -> String {
-    let shown = findings.iter().map(|finding| Shown {
+    let shown = findings.iter().map(|finding| JsonFinding {
         rule: finding.rule.name,
         number: finding.rule.number,
         subject: &finding.subject,

@@ -78,7 +78,7 @@ fn everywhere(snapshot: &Snapshot, title: &str, places: usize) -> String {
 }
 
 /// The maximum number of characters of a text that a title shows.
-const SHOWN: usize = 40;
+const MAX_CHARACTERS: usize = 40;
 
 fn title(snapshot: &Snapshot, fix: &Fix) -> String {
     let lang = snapshot.settings.lang;
@@ -95,11 +95,11 @@ fn title(snapshot: &Snapshot, fix: &Fix) -> String {
     format!("{what}{}{}", lang.pick("：", ": "), lang.text(&fix.message))
 }
 
-/// Returns the text on one line, cut to [`SHOWN`] characters.
+/// Returns the text on one line, cut to [`MAX_CHARACTERS`] characters.
 fn shown(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    if line.chars().count() <= SHOWN {
+    if line.chars().count() <= MAX_CHARACTERS {
         return line;
     }
-    line.chars().take(SHOWN).chain(['…']).collect()
+    line.chars().take(MAX_CHARACTERS).chain(['…']).collect()
 }

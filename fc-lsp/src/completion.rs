@@ -32,12 +32,12 @@ pub fn completion(snapshot: &Snapshot, (file, offset): (FileId, usize)) -> Vec<C
         let Some(occurrence) = occurrence_at(tree.root(), typed.start) else {
             continue;
         };
-        let found = Found {
+        let completions = Completions {
             snapshot,
             replaced,
             items: Vec::new(),
         };
-        let items = found.of(&occurrence);
+        let items = completions.collect(&occurrence);
         if !items.is_empty() {
             return items;
         }
@@ -116,14 +116,14 @@ fn closing(before: &str, after: &str) -> String {
     }
 }
 
-struct Found<'s> {
+struct Completions<'s> {
     snapshot: &'s Snapshot,
     replaced: Span,
     items: Vec<CompletionItem>,
 }
 
-impl Found<'_> {
-    fn of(mut self, occurrence: &Occurrence<'_>) -> Vec<CompletionItem> {
+impl Completions<'_> {
+    fn collect(mut self, occurrence: &Occurrence<'_>) -> Vec<CompletionItem> {
         let keys = occurrence.other_keys();
         let is_key = !keys.is_empty();
         for key in keys {

@@ -191,14 +191,14 @@ pub fn scaffold(
     };
     let (file, source) = files.ok_or_else(layout)?;
     let tree = parse(file, &source.text, &mut Faults::new()).ok_or_else(layout)?;
-    let place = match tree.root().entry(section) {
+    let insertion = match tree.root().entry(section) {
         Some(entry) => inside(source, entry).ok_or_else(layout)?,
-        None => Place::of_section(source, tree.root(), section),
+        None => Insertion::of_section(source, tree.root(), section),
     };
-    let heading = place.heading.then(|| format!("{section}:\n"));
+    let heading = insertion.heading.then(|| format!("{section}:\n"));
     let heading = heading.unwrap_or_default();
-    let block = place.indented(&beginning(new, code));
-    let before = source.text.get(..place.at).ok_or_else(layout)?;
+    let block = insertion.indented(&beginning(new, code));
+    let before = source.text.get(..insertion.at).ok_or_else(layout)?;
     let mut lines = before
         .split('\n')
         .rev()
@@ -208,9 +208,9 @@ pub fn scaffold(
         (Some(""), _) => "\n",
         _ => "\n\n",
     };
-    let below = if place.is_above { "\n" } else { "" };
+    let below = if insertion.is_above { "\n" } else { "" };
     let mut edits = Edits::default();
-    let at = Span::point(file, place.at);
+    let at = Span::point(file, insertion.at);
     edits.replace(at, format!("{gap}{heading}{block}{below}"));
     let text = edited(source, &edits).text;
     let line = line_of(&SourceFile::new(path, &text), section, new.name);
@@ -291,7 +291,7 @@ fn objection(model: &Model, code: u16, new: &NewOperation<'_>) -> Option<Text> {
 }
 
 /// The position of a new operation.
-struct Place {
+struct Insertion {
     /// A byte offset, at the start of a line or at the end of the file.
     at: usize,
     /// The indentation of the name of the operation.
@@ -302,7 +302,7 @@ struct Place {
     is_above: bool,
 }
 
-impl Place {
+impl Insertion {
     /// Returns the position of a section that a file lacks.
     ///
     /// It is above the first section that comes later in the grammar, and above the comments of that section.
@@ -330,14 +330,14 @@ impl Place {
 }
 
 /// Returns the position after the last operation of a section. `None` if the section is not in block style.
-fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Place> {
+fn inside(source: &SourceFile, section: Entry<'_>) -> Option<Insertion> {
     let value = section.value.span();
     let first = section.value.entries().next()?;
     let key = source.line_col(first.key.span().start);
     if key.line == source.line_col(section.key.span().start).line {
         return None;
     }
-    Some(Place {
+    Some(Insertion {
         at: source.next_line(source.line(value.end)),
         indent: key.column - 1,
         heading: false,

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 /// The maximum number of lines that are shown per file.
-const SHOWN: usize = 40;
+const MAX_LINES: usize = 40;
 
 /// The time limit of the search for the smallest difference of a file. After it, the difference is still correct, but
 /// longer.
@@ -63,8 +63,8 @@ fn diff(file: &StaleFile) -> FileDiff {
         &old,
         new,
     );
-    let mut text: String = unified.split_inclusive('\n').take(SHOWN).collect();
-    let rest = unified.lines().count().saturating_sub(SHOWN);
+    let mut text: String = unified.split_inclusive('\n').take(MAX_LINES).collect();
+    let rest = unified.lines().count().saturating_sub(MAX_LINES);
     if rest > 0 {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "… {rest} more lines");

@@ -25,7 +25,7 @@ pub struct Package<'m> {
     /// The modules of message types, sorted by id: one for each group with types, and one for shared types.
     pub modules: Vec<Module<'m>>,
     /// The module and the index of each type, by the type's id.
-    places: Vec<Place>,
+    item_indices: Vec<ItemIndex>,
     /// The frame's header.
     pub header: Vec<Spelled<'m, HeaderField>>,
     /// The keys that every request carries.
@@ -223,7 +223,7 @@ impl<'m> Package<'m> {
         let groups = names.all(Role::Module, &model.groups, |it| {
             (&it.id, Named::alone("group", &it.id))
         });
-        let (modules, places) = modules(language, &groups, items);
+        let (modules, item_indices) = modules(language, &groups, items);
         let streams = streams.into_iter().filter(|it| it.code.value.is_some());
         let envelope = |names: &mut Names<'_, 'm>, direction: Direction, keys: &'m [_]| {
             names.all(Role::Field, keys, |it: &EnvelopeField| {
@@ -235,7 +235,7 @@ impl<'m> Package<'m> {
             model,
             name,
             modules,
-            places,
+            item_indices,
             errors,
             methods,
             ids,
@@ -306,10 +306,10 @@ impl<'m> Package<'m> {
     #[must_use]
     #[expect(
         clippy::indexing_slicing,
-        reason = "the ids are those of the model, and each type has been given a place"
+        reason = "the ids are those of the model, and each type has been given an index"
     )]
     pub fn item(&self, reference: &TypeRef) -> &Item<'m> {
-        let (module, item) = self.places[reference.id().index()];
+        let (module, item) = self.item_indices[reference.id().index()];
         &self.modules[module].items[item]
     }
 
@@ -317,14 +317,14 @@ impl<'m> Package<'m> {
     #[must_use]
     #[expect(clippy::indexing_slicing, reason = "as above")]
     pub fn module_of(&self, reference: &TypeRef) -> &Module<'m> {
-        &self.modules[self.places[reference.id().index()].0]
+        &self.modules[self.item_indices[reference.id().index()].0]
     }
 
     /// Returns all message types, in the order of the spec.
     pub fn items(&self) -> impl Iterator<Item = &Item<'m>> {
-        let module = |place: &Place| self.modules.get(place.0);
-        let items = self.places.iter();
-        items.filter_map(move |place| module(place)?.items.get(place.1))
+        let module = |index: &ItemIndex| self.modules.get(index.0);
+        let items = self.item_indices.iter();
+        items.filter_map(move |index| module(index)?.items.get(index.1))
     }
 
     /// Returns the method of a command or report; `None` for a stream, and for an operation without a code.
@@ -399,14 +399,14 @@ fn kind(ty: &TypeDef) -> &'static str {
 }
 
 /// The index of a module, and the index of a type in it.
-type Place = (usize, usize);
+type ItemIndex = (usize, usize);
 
 /// Puts each type into the module of its group. A group without types has no module.
 fn modules<'m>(
     language: &Language,
     groups: &[Spelled<'m, Group>],
     items: Vec<Item<'m>>,
-) -> (Vec<Module<'m>>, Vec<Place>) {
+) -> (Vec<Module<'m>>, Vec<ItemIndex>) {
     let homes: HashSet<_> = items.iter().map(|it| it.ty.of.group.as_deref()).collect();
     let shared = free(&SHARED, |id| groups.iter().any(|group| group.of.id == id));
     let name = language.spelled(Role::Module, &shared);
@@ -428,15 +428,15 @@ fn modules<'m>(
     modules.sort_by(|one, other| one.id.cmp(&other.id));
     let indices = modules.iter().map(home).zip(0..);
     let indices: HashMap<Option<&str>, usize> = indices.collect();
-    let places = items.into_iter().map(|item| {
+    let item_indices = items.into_iter().map(|item| {
         let index = indices.get(&item.ty.of.group.as_deref());
         let index = index.copied().unwrap_or_default();
         let module = modules.get_mut(index)?;
         module.items.push(item);
         Some((index, module.items.len() - 1))
     });
-    let places = places.flatten().collect();
-    (modules, places)
+    let item_indices = item_indices.flatten().collect();
+    (modules, item_indices)
 }
 
 /// Spells names and collects clashes.

@@ -15,7 +15,7 @@ use fc_spec::model::{Direction, Kind, Operation, Side};
 pub const PAGE_WIDTH: usize = 80;
 
 /// A language in which the pages show every operation.
-pub struct Shown {
+pub struct SampleTab {
     /// The language of a fence.
     pub fence: &'static str,
     /// The file with all samples, relative to the product's root.

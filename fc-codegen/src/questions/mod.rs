@@ -6,7 +6,7 @@ mod sheet;
 pub use crate::emit::markdown::Lang;
 pub use sheet::{SheetError, read};
 
-use crate::emit::markdown::{Book, Page, TabsOf};
+use crate::emit::markdown::{Book, Page, TabsByOperation};
 use fc_spec::model::{Governed, Model, Question};
 
 /// Some of a spec's questions, in an order and a language.
@@ -33,7 +33,7 @@ impl<'m> List<'m> {
     #[must_use]
     pub fn new(model: &'m Model, lang: Lang, by: By, wanted: impl Fn(&Question) -> bool) -> Self {
         Self {
-            book: Book::new(model, TabsOf::new()),
+            book: Book::new(model, TabsByOperation::new()),
             questions: model.questions.iter().filter(|it| wanted(it)).collect(),
             lang,
             by,

@@ -22,7 +22,7 @@ const AS_WRITTEN: [&str; 6] = [
 /// The list of questions. The group of a question follows from its subject.
 const OF_QUESTIONS: &str = "questions";
 /// The maximum number of characters of a value that a finding shows.
-const SHOWN: usize = 60;
+const MAX_CHARACTERS: usize = 60;
 
 /// Returns every difference that no claimed path covers.
 pub(super) fn unjudged(old: &Model, new: &Model, account: &Account) -> Vec<Finding> {
@@ -175,14 +175,14 @@ fn by_id<'v>(items: &'v [Value], keys: &[&str]) -> Option<List<'v>> {
     Some(list)
 }
 
-/// Returns a value, cut to [`SHOWN`] characters. Null becomes an empty string.
+/// Returns a value, cut to [`MAX_CHARACTERS`] characters. Null becomes an empty string.
 fn shown(value: &Value) -> String {
     let text = match value {
         Value::Null => return String::new(),
         Value::String(text) => text.clone(),
         value => value.to_string(),
     };
-    match text.char_indices().nth(SHOWN) {
+    match text.char_indices().nth(MAX_CHARACTERS) {
         Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),
         None => text,
     }

@@ -3,7 +3,7 @@
 use crate::language::grammar::{AnyKey, Kind};
 
 /// Returns the example in the declaration of the key, or else one that follows from its kind.
-pub(super) fn of(key: &AnyKey) -> Option<String> {
+pub(super) fn for_key(key: &AnyKey) -> Option<String> {
     let said = key.said.example.map(str::to_owned);
     said.or_else(|| any(&key.kind))
 }

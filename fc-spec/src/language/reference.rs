@@ -177,7 +177,7 @@ fn key(table: &Table, key: &AnyKey) -> Key {
         text: both(key.doc),
         takes: takes(&key.kind),
         default: key.said.default,
-        example: example::of(key),
+        example: example::for_key(key),
         faults: faults::of_key(table, key),
     }
 }

@@ -98,13 +98,13 @@ impl<'a> Builder<'a> {
                 Ok(event) => event,
                 Err(error) => {
                     let at = self.range.start + error.marker().byte_offset().unwrap_or_default();
-                    let place = self.place(at);
-                    let starts = [place.bracket, self.value.map(|value| value.start)];
+                    let parser = self.parser_state(at);
+                    let starts = [parser.bracket, self.value.map(|value| value.start)];
                     let from = starts
                         .into_iter()
                         .flatten()
                         .fold(self.understood, usize::min);
-                    let fault = scan_error::diagnose(error.kind(), &place);
+                    let fault = scan_error::diagnose(error.kind(), &parser);
                     let stopped = fault.code == FaultCode::TooDeep;
                     let line = super::recover::line_start(self.text, at);
                     let has_cause = control::faulted(self.text, at)
@@ -307,7 +307,7 @@ impl<'a> Builder<'a> {
             self.check_tabs(span, faults);
         }
         if self.open.len() >= limits::DEPTH {
-            faults.push(scan_error::too_deep(&self.place(span.start)));
+            faults.push(scan_error::too_deep(&self.parser_state(span.start)));
             return Err(Stop);
         }
         self.open.push(Open {
@@ -429,8 +429,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn place(&self, at: usize) -> scan_error::Place<'a> {
-        scan_error::Place {
+    fn parser_state(&self, at: usize) -> scan_error::ParserState<'a> {
+        scan_error::ParserState {
             file: self.file,
             text: self.text,
             at,

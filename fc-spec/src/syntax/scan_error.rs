@@ -7,8 +7,8 @@ use super::scan_words;
 use crate::diagnostic::{Diagnostic, FaultCode};
 use crate::source::{FileId, Span};
 
-/// The place where the parser stopped, and its state.
-pub(super) struct Place<'a> {
+/// The state of the parser where it stopped.
+pub(super) struct ParserState<'a> {
     /// The file.
     pub file: FileId,
     /// The text of the whole file.
@@ -23,7 +23,7 @@ pub(super) struct Place<'a> {
     pub bracket: Option<usize>,
 }
 
-impl Place<'_> {
+impl ParserState<'_> {
     /// Returns the span of the character at `at`. It is empty at the end of a line.
     fn here(&self) -> Span {
         self.character(self.at)
@@ -50,27 +50,27 @@ impl Place<'_> {
 }
 
 /// Returns the error for an error of the parser.
-pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
+pub(super) fn diagnose(kind: &ErrorKind, parser: &ParserState<'_>) -> Diagnostic {
     use ErrorKind as K;
     match kind {
-        K::RecursionLimitExceeded => too_deep(place),
+        K::RecursionLimitExceeded => too_deep(parser),
         K::TabNotAllowed
         | K::TabInBlockIndentation
         | K::TabInIndentation
         | K::TabInPlainScalar
-        | K::TabAtBlockScalarStart => tab(place),
-        K::MappingValueNotAllowed => colon(place),
+        | K::TabAtBlockScalarStart => tab(parser),
+        K::MappingValueNotAllowed => colon(parser),
         K::UnclosedQuotedScalar
         | K::InvalidQuotedScalarIndent
-        | K::DocumentIndicatorInQuotedScalar => unclosed_quote(place),
+        | K::DocumentIndicatorInQuotedScalar => unclosed_quote(parser),
         K::InvalidTrailingSingleQuotedScalar | K::InvalidTrailingDoubleQuotedScalar => {
-            behind_quote(place)
+            behind_quote(parser)
         }
         K::UnclosedFlowCollection { open } => {
             let close = if *open == '[' { ']' } else { '}' };
             Diagnostic::error(
                 FaultCode::Unclosed,
-                place.here(),
+                parser.here(),
                 text!("`{open}` 没有闭合", "the `{open}` is never closed"),
             )
             .label(text!("从这里开始", "opened here"))
@@ -79,13 +79,13 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
                 "write `{close}` where it ends"
             ))
         }
-        K::MismatchedFlowCollectionEnd { open, close } => closed_by(*open, *close, place),
+        K::MismatchedFlowCollectionEnd { open, close } => closed_by(*open, *close, parser),
         K::InvalidColonPlacement
         | K::ExpectedFlowMappingSeparator
         | K::ExpectedFlowSequenceSeparator
         | K::UnexpectedEofFlowMapping
         | K::UnexpectedEofFlowSequence
-        | K::UnexpectedEofImplicitFlowMapping => in_bracket(place),
+        | K::UnexpectedEofImplicitFlowMapping => in_bracket(parser),
         K::UnexpectedCharacter { character } => {
             let character = match character {
                 '`' => text!("反引号", "a backtick"),
@@ -96,7 +96,7 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             };
             Diagnostic::error(
                 FaultCode::BadYaml,
-                place.here(),
+                parser.here(),
                 text!(
                     "文本的开头不能是：{character}",
                     "a text cannot start with {character}",
@@ -106,9 +106,9 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
             .note(text!("给文本加上引号", "put the text in quotes"))
         }
         K::DirectiveDisallowed => {
-            let line = place.text.get(place.at..).unwrap_or_default();
+            let line = parser.text.get(parser.at..).unwrap_or_default();
             let line = line.lines().next().unwrap_or_default().trim_end();
-            let span = Span::new(place.file, place.at, place.at + line.len());
+            let span = Span::new(parser.file, parser.at, parser.at + line.len());
             Diagnostic::error(
                 FaultCode::Directive,
                 span,
@@ -126,15 +126,15 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
         _ => match scan_words::words(kind) {
             Some((code, [message, label, note])) => {
                 let odd = (code == FaultCode::BadIndentation)
-                    .then(|| odd_line(place))
+                    .then(|| odd_line(parser))
                     .flatten();
-                Diagnostic::error(code, odd.unwrap_or_else(|| place.here()), message)
+                Diagnostic::error(code, odd.unwrap_or_else(|| parser.here()), message)
                     .label(label)
                     .note(note)
             }
             None => Diagnostic::error(
                 FaultCode::BadYaml,
-                place.here(),
+                parser.here(),
                 text!("不是 YAML：{kind}", "not YAML: {kind}"),
             ),
         },
@@ -142,43 +142,43 @@ pub(super) fn diagnose(kind: &ErrorKind, place: &Place<'_>) -> Diagnostic {
 }
 
 /// Returns the error for a bracket that is closed by another kind of bracket.
-fn closed_by(open: char, close: char, place: &Place<'_>) -> Diagnostic {
+fn closed_by(open: char, close: char, parser: &ParserState<'_>) -> Diagnostic {
     let message = text!(
         "`{open}` 的闭合写成了 `{close}`",
         "the `{open}` is closed by a `{close}`"
     );
     let close_right = if open == '[' { ']' } else { '}' };
-    let fault = Diagnostic::error(FaultCode::Unclosed, place.here(), message)
+    let fault = Diagnostic::error(FaultCode::Unclosed, parser.here(), message)
         .label(text!("从这里开始", "opened here"))
         .note(text!(
             "改写为 `{close_right}`，或补上左括号",
             "write `{close_right}` instead, or add the opening bracket"
         ));
-    let rest = place.text.get(place.understood..).unwrap_or_default();
+    let rest = parser.text.get(parser.understood..).unwrap_or_default();
     let closed = rest.find(close);
-    let closed = closed.map(|at| place.character(place.understood + at));
+    let closed = closed.map(|at| parser.character(parser.understood + at));
     fault.also_if(closed, text!("在这里闭合", "closed here"))
 }
 
 /// Returns the start of the line before the error, if its indentation is the cause. The line of the error then has the
 /// indentation of the next line.
-fn odd_line(place: &Place<'_>) -> Option<Span> {
+fn odd_line(parser: &ParserState<'_>) -> Option<Span> {
     let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
     let is_text = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
-    let start = super::recover::line_start(place.text, place.at);
-    let mut behind = place.text.get(start..)?.lines().filter(is_text);
+    let start = super::recover::line_start(parser.text, parser.at);
+    let mut behind = parser.text.get(start..)?.lines().filter(is_text);
     let (here, next) = (indent(behind.next()?), indent(behind.next()?));
-    let before = place.text.get(..start)?;
+    let before = parser.text.get(..start)?;
     let line = before.lines().rev().find(is_text)?;
-    let at = place.text.get(..start)?.rfind(line)? + indent(line);
-    (here == next && indent(line) > here).then(|| place.character(at))
+    let at = parser.text.get(..start)?.rfind(line)? + indent(line);
+    (here == next && indent(line) > here).then(|| parser.character(at))
 }
 
 /// Returns the error for a colon that does not follow a key.
-fn colon(place: &Place<'_>) -> Diagnostic {
+fn colon(parser: &ParserState<'_>) -> Diagnostic {
     let fault = Diagnostic::error(
         FaultCode::BadYaml,
-        place.here(),
+        parser.here(),
         text!("这里不能写冒号", "a colon is not allowed here"),
     )
     .label(text!(
@@ -193,22 +193,22 @@ fn colon(place: &Place<'_>) -> Diagnostic {
         "如果想写一个新的键，检查这一行的缩进",
         "if a new key was meant, check the indentation of its line"
     ));
-    let before = place.value.filter(|value| {
-        let lines = place.text.get(value.start..value.end).unwrap_or_default();
-        value.end <= place.at && lines.contains('\n')
+    let before = parser.value.filter(|value| {
+        let lines = parser.text.get(value.start..value.end).unwrap_or_default();
+        value.end <= parser.at && lines.contains('\n')
     });
     // A line that starts like a key lacks its colon.
     let lacks_colon = before.filter(|value| {
-        let line = super::recover::line_start(place.text, value.start);
-        let blanks = place.text.get(line..value.start).unwrap_or_default();
-        let text = place.text.get(value.start..).unwrap_or_default();
+        let line = super::recover::line_start(parser.text, value.start);
+        let blanks = parser.text.get(line..value.start).unwrap_or_default();
+        let text = parser.text.get(value.start..).unwrap_or_default();
         let is_plain = !text.starts_with(['"', '\'', '|', '>']);
         is_plain && blanks.trim_matches([' ', '-']).is_empty()
     });
     if let Some(value) = lacks_colon {
-        let text = place.text.get(value.start..value.end).unwrap_or_default();
+        let text = parser.text.get(value.start..value.end).unwrap_or_default();
         let line = text.lines().next().unwrap_or_default().trim_end().len();
-        let first = Span::new(place.file, value.start, value.start + line);
+        let first = Span::new(parser.file, value.start, value.start + line);
         return Diagnostic::error(
             FaultCode::BadYaml,
             first,
@@ -216,7 +216,7 @@ fn colon(place: &Place<'_>) -> Diagnostic {
         )
         .label(text!("实际是这个", "found this"))
         .also(
-            place.here(),
+            parser.here(),
             text!(
                 "这个冒号所在的行被当作它的一部分",
                 "the line with this colon is taken for a part of it"
@@ -231,24 +231,27 @@ fn colon(place: &Place<'_>) -> Diagnostic {
         "这一行属于从这里开始的值",
         "the line belongs to the value that starts here"
     );
-    fault.also_if(before.map(|value| place.character(value.start)), label)
+    fault.also_if(before.map(|value| parser.character(value.start)), label)
 }
 
 /// Returns the error for brackets whose content is followed by neither `,` nor their end.
-fn in_bracket(place: &Place<'_>) -> Diagnostic {
+fn in_bracket(parser: &ParserState<'_>) -> Diagnostic {
     let note = text!(
         "补上缺少的括号，或给文本加上引号",
         "add the missing bracket, or put the text in quotes"
     );
-    let Some(bracket) = place.bracket else {
+    let Some(bracket) = parser.bracket else {
         let message = text!("应为 `,` 或右括号", "expected `,` or a closing bracket");
-        return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
+        return Diagnostic::error(FaultCode::Unclosed, parser.here(), message)
             .label(text!("实际是这个", "found this instead"))
             .note(note);
     };
-    let opened = place.character(bracket);
-    let here = place.here();
-    let between = place.text.get(opened.start..here.start).unwrap_or_default();
+    let opened = parser.character(bracket);
+    let here = parser.here();
+    let between = parser
+        .text
+        .get(opened.start..here.start)
+        .unwrap_or_default();
     let fault = if between.contains('\n') {
         let message = text!("没有闭合的括号", "a bracket that is not closed");
         Diagnostic::error(FaultCode::Unclosed, opened, message)
@@ -266,33 +269,33 @@ fn in_bracket(place: &Place<'_>) -> Diagnostic {
     fault.note(note)
 }
 
-fn behind_quote(place: &Place<'_>) -> Diagnostic {
+fn behind_quote(parser: &ParserState<'_>) -> Diagnostic {
     // If a text of several lines is followed by more text on the line, it has ended at the opening quote of another
     // text.
-    let opened = place.quote().filter(|quote| {
-        let between = place.text.get(quote.start..place.at).unwrap_or_default();
+    let opened = parser.quote().filter(|quote| {
+        let between = parser.text.get(quote.start..parser.at).unwrap_or_default();
         between.contains('\n')
     });
     if opened.is_some() {
-        return unclosed_quote(place);
+        return unclosed_quote(parser);
     }
     let message = text!("右引号后面还有文本", "text after a closing quote");
-    let fault = Diagnostic::error(FaultCode::BadYaml, place.here(), message)
+    let fault = Diagnostic::error(FaultCode::BadYaml, parser.here(), message)
         .label(text!("不在引号之内", "not part of the quoted text"))
         .note(text!(
             "引号中要写引号：'…' 中写 `''`，\"…\" 中写 `\\\"`",
             "to write a quote inside quotes: `''` in '…', `\\\"` in \"…\""
         ));
     let label = text!("引号中的文本从这里开始", "the quoted text starts here");
-    fault.also_if(place.quote(), label)
+    fault.also_if(parser.quote(), label)
 }
 
 /// Returns the error for too many brackets or levels.
-pub(super) fn too_deep(place: &Place<'_>) -> Diagnostic {
+pub(super) fn too_deep(parser: &ParserState<'_>) -> Diagnostic {
     let limit = super::limits::DEPTH;
     Diagnostic::error(
         FaultCode::TooDeep,
-        place.here(),
+        parser.here(),
         text!(
             "映射和列表嵌套超过 {limit} 层",
             "more than {limit} nested mappings and lists"
@@ -306,17 +309,20 @@ pub(super) fn too_deep(place: &Place<'_>) -> Diagnostic {
 }
 
 /// Returns the error for a tab that the parser refuses.
-fn tab(place: &Place<'_>) -> Diagnostic {
-    let line = super::recover::line_start(place.text, place.at);
+fn tab(parser: &ParserState<'_>) -> Diagnostic {
+    let line = super::recover::line_start(parser.text, parser.at);
     // In block scalars the parser reports the `|` above the line.
-    let next = place.text.get(place.at..).and_then(|rest| rest.find('\n'));
-    let next = next.map(|newline| place.at + newline + 1);
+    let next = parser
+        .text
+        .get(parser.at..)
+        .and_then(|rest| rest.find('\n'));
+    let next = next.map(|newline| parser.at + newline + 1);
     std::iter::once(line)
         .chain(next)
-        .find_map(|line| indenting_tab(place.file, place.text, line))
+        .find_map(|line| indenting_tab(parser.file, parser.text, line))
         .unwrap_or_else(|| {
             let message = text!("这里不能用制表符", "a tab is not allowed here");
-            Diagnostic::error(FaultCode::Tab, place.here(), message)
+            Diagnostic::error(FaultCode::Tab, parser.here(), message)
                 .note(text!("改用空格", "write spaces instead"))
         })
 }
@@ -346,21 +352,21 @@ pub(super) fn indenting_tab(file: FileId, text: &str, line: usize) -> Option<Dia
     )
 }
 
-fn unclosed_quote(place: &Place<'_>) -> Diagnostic {
+fn unclosed_quote(parser: &ParserState<'_>) -> Diagnostic {
     let message = text!("引号没有闭合的文本", "a quoted text that is never closed");
     let note = text!(
         "补上右引号，或让文本各行的缩进比键更深",
         "write the closing quote, or indent the lines of the text deeper than its key"
     );
-    let Some(quote) = place.quote() else {
-        return Diagnostic::error(FaultCode::Unclosed, place.here(), message)
+    let Some(quote) = parser.quote() else {
+        return Diagnostic::error(FaultCode::Unclosed, parser.here(), message)
             .label(text!("到这里无法继续", "cannot continue here"))
             .note(note);
     };
     let fault = Diagnostic::error(FaultCode::Unclosed, quote, message)
         .label(text!("从这里开始", "opened here"));
-    let rest = place.text.get(place.at..).unwrap_or_default();
-    let stopped = (!rest.trim().is_empty()).then(|| place.here());
+    let rest = parser.text.get(parser.at..).unwrap_or_default();
+    let stopped = (!rest.trim().is_empty()).then(|| parser.here());
     let label = text!("到这里无法继续", "cannot continue here");
     fault.also_if(stopped, label).note(note)
 }

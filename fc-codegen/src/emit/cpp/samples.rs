@@ -9,7 +9,7 @@ use crate::package::context::Context;
 use crate::package::expr::Record;
 use crate::package::items::Spelled;
 use crate::package::language::CPP as LANGUAGE;
-use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, SampleTab, Verb};
 use crate::package::source::Source;
 use crate::package::style::Style;
 use fc_spec::model::Operation;
@@ -24,7 +24,7 @@ static ON_PAGES: Style = Style {
 pub const FILE: &str = "tests/samples.cpp";
 
 /// The C++ samples on the pages.
-pub const SHOWN: Shown = Shown {
+pub const TAB: SampleTab = SampleTab {
     fence: "cpp",
     file: FILE,
     language: &LANGUAGE,

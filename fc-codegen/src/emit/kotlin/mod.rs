@@ -68,7 +68,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let files = files.filter(|(_, body)| !body.is_empty());
     let files = files.map(|(name, body)| whole(&format!("{folder}/{name}.kt"), &body, &[]));
     let samples = whole(
-        samples::SHOWN.file,
+        samples::TAB.file,
         &samples::samples_file(context).finish(),
         samples::IMPORTED,
     );

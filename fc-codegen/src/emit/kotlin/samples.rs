@@ -11,7 +11,7 @@ use crate::package::docs::Docs;
 use crate::package::expr::{Expr, Record};
 use crate::package::language::{KOTLIN, Role};
 use crate::package::name::free;
-use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, SampleTab, Verb};
 use crate::package::source::Source;
 use crate::package::style::Style;
 use fc_spec::model::Type;
@@ -23,7 +23,7 @@ static ON_PAGES: Style = Style {
 };
 
 /// The Kotlin samples on the pages.
-pub const SHOWN: Shown = Shown {
+pub const TAB: SampleTab = SampleTab {
     fence: "kotlin",
     file: "generated/src/test/kotlin/Samples.kt",
     language: &KOTLIN,

@@ -1,7 +1,7 @@
 //! Indexes the model for the pages of both languages.
 
 use super::links::{Anchor, Page};
-use super::tabs::{Tabs, TabsOf};
+use super::tabs::{Tabs, TabsByOperation};
 use super::terms::Terms;
 use super::words;
 use crate::sample::Samples;
@@ -19,7 +19,7 @@ pub(crate) struct Book<'m> {
     pub(super) samples: Samples<'m>,
     pub(super) reflector: Reflector<'m>,
     /// The samples of operations in each language, by operation name.
-    tabs: TabsOf,
+    tabs: TabsByOperation,
     operations: HashMap<&'m str, &'m Operation>,
     /// Answers by subject.
     answers: HashMap<&'m Subject, Vec<&'m Answer>>,
@@ -35,7 +35,7 @@ pub(crate) struct Book<'m> {
 
 impl<'m> Book<'m> {
     /// Indexes a model. `tabs` has the samples of operations.
-    pub(crate) fn new(model: &'m Model, tabs: TabsOf) -> Self {
+    pub(crate) fn new(model: &'m Model, tabs: TabsByOperation) -> Self {
         let samples = Samples::new(model);
         let answers = model.answers.iter().map(|it| (&it.subject, it));
         let bodies = model.types.iter();

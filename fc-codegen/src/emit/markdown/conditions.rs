@@ -1,21 +1,23 @@
 //! Conditions of fields: the values of other fields that decide whether a field is present.
 
 use super::desk::Desk;
-use super::rows::{Place, scalar};
+use super::rows::{RowPosition, scalar};
 use fc_spec::model::{Asked, Condition, Field, Scalar, StructType, TypeShape};
 use minijinja::{Value, context};
 
 impl<'m> Desk<'_, 'm> {
-    /// Returns the condition of a field of the struct that is listed at `place`.
+    /// Returns the condition of a field of the struct that is listed at `position`.
     pub(super) fn condition(
         &self,
         shape: &'m StructType,
         field: &Field,
-        place: &Place,
+        position: &RowPosition,
     ) -> Option<Value> {
         let condition = field.details().condition.as_ref()?;
         let asked = condition.asked().iter();
-        let asked: Vec<_> = asked.map(|asked| self.asked(shape, asked, place)).collect();
+        let asked: Vec<_> = asked
+            .map(|asked| self.asked(shape, asked, position))
+            .collect();
         Some(context! {
             is_unless => matches!(condition, Condition::Unless(_)),
             // The condition decides the presence of an optional field, and the validity of another one.
@@ -24,7 +26,7 @@ impl<'m> Desk<'_, 'm> {
         })
     }
 
-    fn asked(&self, shape: &'m StructType, asked: &Asked, place: &Place) -> Value {
+    fn asked(&self, shape: &'m StructType, asked: &Asked, position: &RowPosition) -> Value {
         let beside = shape.field(&asked.wire);
         let value = |wire: &Scalar| {
             context! {
@@ -34,12 +36,12 @@ impl<'m> Desk<'_, 'm> {
         };
         context! {
             key => &asked.wire,
-            href => self.link(self.page, place.field(&asked.wire).anchor()),
+            href => self.link(self.page, position.field(&asked.wire).anchor()),
             any => asked.values.iter().map(value).collect::<Vec<_>>(),
         }
     }
 
-    /// Returns the name of an enum value, and the place of the enum.
+    /// Returns the name of an enum value, and the position of the enum.
     fn known(&self, field: &'m Field, wire: &Scalar) -> Option<Value> {
         let ty = self.book.model.types.get(field.ty.innermost()?);
         let TypeShape::Enum(shape) = &ty.shape else {

@@ -4,7 +4,7 @@
 //! without a filter is escaped for a table cell, the strictest place, and does not count as a sentence of the spec.
 //! Printing nothing, a list or an object is an error of the template.
 
-use super::escape::{self, Place};
+use super::escape::{self, Slot};
 use super::links::Link;
 use super::places::{Kept, Reference};
 use super::terms::marked;
@@ -52,21 +52,21 @@ const TEMPLATES: &[(&str, &str)] = templates! {
 };
 
 /// Filters for sentences of the spec. They mark their output.
-const SENTENCES: [(&str, Place<'_>); 4] = [
-    ("text", Place::Line),
-    ("cell", Place::Cell),
-    ("label", Place::Label),
-    ("prose", Place::Prose),
+const SENTENCES: [(&str, Slot<'_>); 4] = [
+    ("text", Slot::Line),
+    ("cell", Slot::Cell),
+    ("label", Slot::Label),
+    ("prose", Slot::Prose),
 ];
 
 /// Filters for names and values.
-const NAMES: [(&str, Place<'_>); 6] = [
-    ("code", Place::Code),
-    ("code_cell", Place::CodeCell),
-    ("diagram", Place::Diagram),
-    ("yaml", Place::FrontMatter),
-    ("attribute", Place::Attribute),
-    ("target", Place::Target),
+const NAMES: [(&str, Slot<'_>); 6] = [
+    ("code", Slot::Code),
+    ("code_cell", Slot::CodeCell),
+    ("diagram", Slot::Diagram),
+    ("yaml", Slot::FrontMatter),
+    ("attribute", Slot::Attribute),
+    ("target", Slot::Target),
 ];
 
 pub(super) struct Engine {
@@ -87,18 +87,18 @@ impl Engine {
         environment.set_undefined_behavior(UndefinedBehavior::Strict);
         environment.set_auto_escape_callback(|_| AutoEscape::Custom("markdown".into()));
         environment.set_formatter(print);
-        for (name, place) in SENTENCES {
+        for (name, slot) in SENTENCES {
             environment.add_filter(name, move |source: &str| {
-                safe(marked(&escape::write(source, place)))
+                safe(marked(&escape::write(source, slot)))
             });
         }
-        for (name, place) in NAMES {
-            environment.add_filter(name, move |source: &str| safe(escape::write(source, place)));
+        for (name, slot) in NAMES {
+            environment.add_filter(name, move |source: &str| safe(escape::write(source, slot)));
         }
         // Markdown keeps only this space at the start of a cell.
         environment.add_filter("indent", |depth: usize| safe("\u{2003}".repeat(depth)));
         environment.add_filter("fence", |source: &str, language: &str| {
-            safe(escape::write(source, Place::Fence(language)))
+            safe(escape::write(source, Slot::Fence(language)))
         });
         for (name, source) in TEMPLATES {
             environment.add_template(name, source)?;
@@ -186,7 +186,7 @@ fn spelled(value: &Value) -> Result<Cow<'_, str>, Error> {
         (ValueKind::Bool, _) => Ok(if value.is_true() { "true" } else { "false" }.into()),
         (ValueKind::Number, _) => Ok(value.to_string().into()),
         (ValueKind::String, Some(source)) if value.is_safe() => Ok(source.into()),
-        (ValueKind::String, Some(source)) => Ok(escape::write(source, Place::Cell).into()),
+        (ValueKind::String, Some(source)) => Ok(escape::write(source, Slot::Cell).into()),
         (kind, _) => {
             let message = format!("a template prints {kind}, which has no spelling in Markdown");
             Err(Error::new(ErrorKind::InvalidOperation, message))

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 
 /// The part of a page that a text goes into.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Place<'a> {
+pub(super) enum Slot<'a> {
     /// A line, outside of tables.
     Line,
     /// A table cell.
@@ -38,23 +38,23 @@ pub(super) enum Place<'a> {
     Data,
 }
 
-/// Returns a text in the spelling of the place. Every text of a page passes through here.
+/// Returns a text in the spelling of the slot. Every text of a page passes through here.
 #[must_use]
-pub(super) fn write(source: &str, place: Place<'_>) -> String {
+pub(super) fn write(source: &str, slot: Slot<'_>) -> String {
     let source = &*visible(source);
-    match place {
-        Place::Line => line(source),
-        Place::Cell => cell(source),
-        Place::Label => label(source),
-        Place::Prose => prose(source),
-        Place::Code => code(source),
-        Place::CodeCell => bars_escaped(code(source)),
-        Place::Fence(language) => fence(source, language),
-        Place::Diagram => one_line(source),
-        Place::FrontMatter => front_matter(source),
-        Place::Attribute => html(&one_line(source)),
-        Place::Target => target(source),
-        Place::Data => source.to_owned(),
+    match slot {
+        Slot::Line => line(source),
+        Slot::Cell => cell(source),
+        Slot::Label => label(source),
+        Slot::Prose => prose(source),
+        Slot::Code => code(source),
+        Slot::CodeCell => bars_escaped(code(source)),
+        Slot::Fence(language) => fence(source, language),
+        Slot::Diagram => one_line(source),
+        Slot::FrontMatter => front_matter(source),
+        Slot::Attribute => html(&one_line(source)),
+        Slot::Target => target(source),
+        Slot::Data => source.to_owned(),
     }
 }
 

@@ -29,7 +29,7 @@ mod words;
 pub(crate) use book::Book;
 pub use fc_spec::model::Lang;
 pub(crate) use links::Page;
-pub(crate) use tabs::TabsOf;
+pub(crate) use tabs::TabsByOperation;
 pub(crate) use words::{Word, confirmed, purpose};
 
 use crate::product::{Artifact, Product};
@@ -91,7 +91,7 @@ impl<'m> Press<'m> {
         let languages = Lang::ALL.into_iter();
         let languages = languages.filter(|lang| targets.texts_of(Product::Markdown).include(*lang));
         Self {
-            book: Book::new(model, tabs::of(model, targets)),
+            book: Book::new(model, tabs::by_operation(model, targets)),
             targets,
             languages: languages.map(|it| (it, engine.speaking(it))).collect(),
         }

@@ -1,6 +1,6 @@
 //! `navigation.json`: groups and their operations, for the site's sidebar, map and search.
 
-use super::escape::{self, Place};
+use super::escape::{self, Slot};
 use super::links::Page;
 use fc_spec::model::{Group, Model, Text, Value};
 
@@ -54,7 +54,7 @@ fn titled(title: &Text, more: Vec<(&str, Value)>) -> Value {
     let texts = [("zh", &title.zh), ("en", &title.en)].map(|(key, text)| {
         (
             key.to_owned(),
-            Value::String(escape::write(text, Place::Data)),
+            Value::String(escape::write(text, Slot::Data)),
         )
     });
     let more = more.into_iter().map(|(key, value)| (key.to_owned(), value));

@@ -67,7 +67,7 @@ struct More {
 impl<'m> Desk<'_, 'm> {
     /// Returns the keys of the envelope.
     pub(super) fn envelope_rows(&self, direction: Direction) -> Vec<Row> {
-        let body = Place::top(Anchor::named(direction.name()));
+        let body = RowPosition::top(Anchor::named(direction.name()));
         let envelope = self.book.samples.envelope(direction).iter();
         envelope
             .map(|field| self.envelope_row(field, &body.field(&field.wire)))
@@ -76,7 +76,7 @@ impl<'m> Desk<'_, 'm> {
 
     /// Returns the keys of the envelope, then the fields of a struct and of all objects in it.
     pub(super) fn message_rows(&self, direction: Direction, ty: &TypeRef) -> Vec<Row> {
-        let body = Place::top(Anchor::named(direction.name()));
+        let body = RowPosition::top(Anchor::named(direction.name()));
         let mut rows = self.envelope_rows(direction);
         let ty = self.book.model.types.get(ty);
         self.shape(ty, &body, &mut Vec::new(), &mut rows);
@@ -87,7 +87,7 @@ impl<'m> Desk<'_, 'm> {
     /// with `anchor`.
     pub(super) fn type_rows(&self, ty: &'m TypeDef, anchor: Anchor) -> Vec<Row> {
         let mut rows = Vec::new();
-        self.shape(ty, &Place::top(anchor), &mut Vec::new(), &mut rows);
+        self.shape(ty, &RowPosition::top(anchor), &mut Vec::new(), &mut rows);
         rows
     }
 
@@ -106,14 +106,20 @@ impl<'m> Desk<'_, 'm> {
         }
     }
 
-    fn shape(&self, ty: &'m TypeDef, place: &Place, open: &mut Vec<&'m str>, rows: &mut Vec<Row>) {
+    fn shape(
+        &self,
+        ty: &'m TypeDef,
+        position: &RowPosition,
+        open: &mut Vec<&'m str>,
+        rows: &mut Vec<Row>,
+    ) {
         if open.contains(&ty.name.as_str()) {
             return;
         }
         open.push(&ty.name);
         match &ty.shape {
-            TypeShape::Struct(shape) => self.fields(ty, shape, place, open, rows),
-            TypeShape::OneOf(choice) => self.variants(choice, place, open, rows),
+            TypeShape::Struct(shape) => self.fields(ty, shape, position, open, rows),
+            TypeShape::OneOf(choice) => self.variants(choice, position, open, rows),
             TypeShape::Enum(_) => {}
         }
         open.pop();
@@ -123,21 +129,21 @@ impl<'m> Desk<'_, 'm> {
         &self,
         owner: &TypeDef,
         shape: &'m StructType,
-        place: &Place,
+        position: &RowPosition,
         open: &mut Vec<&'m str>,
         rows: &mut Vec<Row>,
     ) {
         for field in &shape.fields {
-            let condition = self.condition(shape, field, place);
-            let place = place.field(&field.wire);
-            let mut row = self.row(owner, field, &place);
+            let condition = self.condition(shape, field, position);
+            let position = position.field(&field.wire);
+            let mut row = self.row(owner, field, &position);
             if let Some(more) = &mut row.more {
                 more.condition = condition;
             }
             rows.push(row);
             if let Some(named) = field.ty.innermost() {
                 let inner = self.book.model.types.get(named);
-                self.shape(inner, &place.items_of(&field.ty), open, rows);
+                self.shape(inner, &position.items_of(&field.ty), open, rows);
             }
         }
     }
@@ -145,15 +151,15 @@ impl<'m> Desk<'_, 'm> {
     fn variants(
         &self,
         choice: &'m OneOf,
-        place: &Place,
+        position: &RowPosition,
         open: &mut Vec<&'m str>,
         rows: &mut Vec<Row>,
     ) {
         for variant in &choice.variants {
-            let place = place.variant(&variant.name);
+            let position = position.variant(&variant.name);
             let ty = Type::Named(TypeRef::clone(&variant.ty));
             let mut row = Row::plain(
-                &place,
+                &position,
                 self.type_cell(&ty, None),
                 self.lang.text(&variant.text),
             );
@@ -169,11 +175,11 @@ impl<'m> Desk<'_, 'm> {
             }
             rows.push(row);
             let ty = self.book.model.types.get(&variant.ty);
-            self.shape(ty, &place, open, rows);
+            self.shape(ty, &position, open, rows);
         }
     }
 
-    fn row(&self, owner: &TypeDef, field: &Field, place: &Place) -> Row {
+    fn row(&self, owner: &TypeDef, field: &Field, position: &RowPosition) -> Row {
         let details = field.details();
         let ty = self.type_cell(&field.ty, words::sent(field.wire_form, self.lang));
         let numbers = details.constraints.numbers();
@@ -184,7 +190,7 @@ impl<'m> Desk<'_, 'm> {
             note: details.note.as_ref().map(|note| self.sentence(note)),
             example: leaf_example(field),
             more: self.more(owner, field).map(Box::new),
-            ..Row::plain(place, ty, &self.sentence(&field.text))
+            ..Row::plain(position, ty, &self.sentence(&field.text))
         }
     }
 
@@ -224,7 +230,7 @@ impl<'m> Desk<'_, 'm> {
         })
     }
 
-    fn envelope_row(&self, field: &EnvelopeField, place: &Place) -> Row {
+    fn envelope_row(&self, field: &EnvelopeField, position: &RowPosition) -> Row {
         let text = self.lang.text(&field.text);
         Row {
             presence: presence(field.optional, false),
@@ -234,7 +240,7 @@ impl<'m> Desk<'_, 'm> {
                     ..More::default()
                 })
             }),
-            ..Row::plain(place, self.type_cell(&field.ty, None), text)
+            ..Row::plain(position, self.type_cell(&field.ty, None), text)
         }
     }
 
@@ -319,12 +325,12 @@ impl Row {
         &self.text
     }
 
-    fn plain(place: &Place, ty: Value, text: &str) -> Self {
+    fn plain(position: &RowPosition, ty: Value, text: &str) -> Self {
         Self {
-            path: place.path.clone(),
-            anchor: place.anchor.clone().id(),
-            depth: place.depth.saturating_sub(1),
-            name: place.name.clone(),
+            path: position.path.clone(),
+            anchor: position.anchor.clone().id(),
+            depth: position.depth.saturating_sub(1),
+            name: position.name.clone(),
             ty,
             presence: "required",
             unit: None,
@@ -337,9 +343,9 @@ impl Row {
     }
 }
 
-/// The place of a row in a body.
+/// The position of a row in a body.
 #[derive(Clone)]
-pub(super) struct Place {
+pub(super) struct RowPosition {
     path: String,
     anchor: Anchor,
     name: String,
@@ -347,7 +353,7 @@ pub(super) struct Place {
     depth: usize,
 }
 
-impl Place {
+impl RowPosition {
     fn top(anchor: Anchor) -> Self {
         Self {
             path: String::new(),
@@ -357,7 +363,7 @@ impl Place {
         }
     }
 
-    /// Returns the place of a field below this one.
+    /// Returns the position of a field below this one.
     pub(super) fn field(&self, key: &str) -> Self {
         let dot = if self.path.is_empty() { "" } else { "." };
         self.step(format!("{}{dot}{key}", self.path), key)
@@ -382,13 +388,13 @@ impl Place {
     }
 
     fn items_of(&self, ty: &Type) -> Self {
-        let mut place = self.clone();
+        let mut position = self.clone();
         let mut ty = ty;
         while let Type::Array(item) = ty {
-            place.path.push_str("[]");
+            position.path.push_str("[]");
             ty = item;
         }
-        place
+        position
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::emit::{cpp, kotlin, python, rust, typescript};
 use crate::package::context::Context;
-use crate::package::samples::{self, Sample, Shown};
+use crate::package::samples::{self, Sample, SampleTab};
 use crate::product::Product;
 use crate::product::below;
 use crate::target::{Targets, part};
@@ -13,16 +13,16 @@ use serde::Serialize;
 use std::collections::HashMap;
 
 /// The languages, in the order of their tabs.
-const SHOWN: [(Product, &Shown); 5] = [
-    (Product::Rust, &rust::samples::SHOWN),
-    (Product::TypeScript, &typescript::samples::SHOWN),
-    (Product::Python, &python::samples::SHOWN),
-    (Product::Kotlin, &kotlin::samples::SHOWN),
-    (Product::Cpp, &cpp::samples::SHOWN),
+const TABS: [(Product, &SampleTab); 5] = [
+    (Product::Rust, &rust::samples::TAB),
+    (Product::TypeScript, &typescript::samples::TAB),
+    (Product::Python, &python::samples::TAB),
+    (Product::Kotlin, &kotlin::samples::TAB),
+    (Product::Cpp, &cpp::samples::TAB),
 ];
 
 /// Samples by operation name. Operations without a code have none.
-pub(crate) type TabsOf = HashMap<String, Tabs>;
+pub(crate) type TabsByOperation = HashMap<String, Tabs>;
 
 /// The samples of an operation, with a tab for each language.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -36,9 +36,9 @@ pub(crate) struct Tabs {
 }
 
 /// Returns the samples of all operations of a model.
-pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
-    let mut all = TabsOf::new();
-    for (product, shown) in SHOWN {
+pub(super) fn by_operation(model: &Model, targets: &Targets) -> TabsByOperation {
+    let mut all = TabsByOperation::new();
+    for (product, tab) in TABS {
         let Some(place) = targets.place(product) else {
             continue;
         };
@@ -46,20 +46,23 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
         let Ok(model) = part(model, targets.audience(product)) else {
             continue;
         };
-        let language = targets.naming(shown.language);
-        let context = Context::new(&model, language, shown.style);
-        let tab = |sample: Sample<'_, '_>| {
+        let language = targets.naming(tab.language);
+        let context = Context::new(&model, language, tab.style);
+        let written = |sample: Sample<'_, '_>| {
             let mut out = context.source();
-            (shown.write)(&mut out, &context, &sample);
+            (tab.write)(&mut out, &context, &sample);
             context! {
-                info => format!("{} [{}]", shown.fence, language.title),
+                info => format!("{} [{}]", tab.fence, language.title),
                 code => out.finish(),
             }
         };
         let both = model.operations.par_iter().map(|operation| {
             let app = samples::app(&context, operation);
             let robot = samples::robot(&context, operation);
-            (operation.name.as_str(), [app, robot].map(|it| it.map(tab)))
+            (
+                operation.name.as_str(),
+                [app, robot].map(|it| it.map(written)),
+            )
         });
         for (name, [app, robot]) in both.collect::<Vec<_>>() {
             if app.is_none() && robot.is_none() {
@@ -68,7 +71,7 @@ pub(super) fn of(model: &Model, targets: &Targets) -> TabsOf {
             let tabs = all.entry(name.to_owned()).or_default();
             tabs.app.extend(app);
             tabs.robot.extend(robot);
-            let path = below(place, shown.file);
+            let path = below(place, tab.file);
             tabs.files
                 .push(context! { language => language.title, path });
         }

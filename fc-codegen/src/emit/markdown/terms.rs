@@ -36,7 +36,7 @@ impl<'m> Terms<'m> {
     }
 
     /// Returns the terms in a text of the spec, each once. Code and links do not count.
-    pub(super) fn of(&self, text: &str) -> Vec<&'m Term> {
+    pub(super) fn in_text(&self, text: &str) -> Vec<&'m Term> {
         let mut found: Vec<&Term> = Vec::new();
         self.rewritten(text, &mut true, &mut |term, _| {
             if !found.iter().any(|known| known.id == term.id) {
@@ -454,7 +454,7 @@ dock
             linked.as_deref(),
             Some("站点在[桩](#term-dock)前，离桩不远")
         );
-        let found = terms.of("桩、点位、站点和 `SN`");
+        let found = terms.in_text("桩、点位、站点和 `SN`");
         let found: Vec<&str> = found.into_iter().map(|term| term.id.as_str()).collect();
         assert_eq!(found, ["dock", "station"]);
     }

@@ -52,7 +52,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         (source("robot.py"), all, stubs::robot(context, plan)),
         (source("sync.py"), all, stubs::sync(context, plan)),
         (
-            samples::SHOWN.file.to_owned(),
+            samples::TAB.file.to_owned(),
             all,
             samples::samples_file(context, &package),
         ),

@@ -7,7 +7,7 @@ use super::source::{PYTHON, Python, method};
 use crate::package::context::Context;
 use crate::package::expr::Record;
 use crate::package::language::PYTHON as LANGUAGE;
-use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, SampleTab, Verb};
 use crate::package::source::Source;
 use crate::package::style::Style;
 
@@ -18,7 +18,7 @@ static ON_PAGES: Style = Style {
 };
 
 /// The Python samples on the pages.
-pub const SHOWN: Shown = Shown {
+pub const TAB: SampleTab = SampleTab {
     fence: "python",
     file: "tests/test_samples.py",
     language: &LANGUAGE,

@@ -16,23 +16,23 @@ const LIST_WIDTH: usize = 50;
 /// The maximum width of named fields on one line, as in rustfmt.
 const FIELDS_WIDTH: usize = 18;
 
-/// The crate of a constant, which decides the form of its structs.
+/// The scope of a constant, which decides the form of its structs.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum ConstantScope {
     /// In the package that defines the types: a literal with all fields.
-    Inside,
+    Package,
     /// In a program that uses the package: `new` and setters, because the structs may gain fields.
-    Outside,
+    Program,
 }
 
 /// Returns a constant, laid out as rustfmt would from column `used`.
-pub fn spelled(expr: &Expr<'_>, place: Place, used: usize) -> String {
-    Spelling::of(expr, place).laid_out(used)
+pub fn spelled(expr: &Expr<'_>, scope: ConstantScope, used: usize) -> String {
+    Spelling::of(expr, scope).laid_out(used)
 }
 
 /// Returns a struct, laid out as rustfmt would from column `used`.
-pub fn spelled_record(record: &Record<'_>, place: Place, used: usize) -> String {
-    Spelling::record(record, place).laid_out(used)
+pub fn spelled_record(record: &Record<'_>, scope: ConstantScope, used: usize) -> String {
+    Spelling::record(record, scope).laid_out(used)
 }
 
 /// Values with the names of their fields.
@@ -45,7 +45,7 @@ enum Spelling {
     /// A prefix and a suffix around another constant: `Some(`, `)`.
     Around(String, Box<Spelling>, &'static str),
     /// `vec![…]`.
-    List(Vec<Spelling>, Place),
+    List(Vec<Spelling>, ConstantScope),
     /// `Name { field: value }`.
     Literal(String, Fields),
     /// Required fields, then optional fields: `Name::new(a).with_b(b)`.
@@ -55,7 +55,7 @@ enum Spelling {
 }
 
 impl Spelling {
-    fn of(expr: &Expr<'_>, place: Place) -> Self {
+    fn of(expr: &Expr<'_>, scope: ConstantScope) -> Self {
         Self::Atom(match expr {
             Expr::Bool(value) => value.to_string(),
             Expr::Int(value) => grouped(*value),
@@ -63,46 +63,46 @@ impl Spelling {
             Expr::Text(text) if text.is_empty() => "String::new()".to_owned(),
             Expr::Text(text) => format!("{}.to_owned()", literal(text)),
             Expr::Bytes(bytes) => format!("Bytes64(b\"{}\".to_vec())", bytes.escape_ascii()),
-            Expr::Json(text) => match place {
-                Place::Inside => format!(
+            Expr::Json(text) => match scope {
+                ConstantScope::Package => format!(
                     "Json::new({}).unwrap_or_else(|_| Json::null())",
                     literal(text)
                 ),
-                Place::Outside => format!("serde_json::json!({text}).into()"),
+                ConstantScope::Program => format!("serde_json::json!({text}).into()"),
             },
             Expr::Value(item, value) => format!("{}::{}", item.ty.name, value.name),
             Expr::Unlisted(item, value) => {
                 let open = format!("{}::from(", item.ty.name);
-                return Self::Around(open, Box::new(Self::of(value, place)), ")");
+                return Self::Around(open, Box::new(Self::of(value, scope)), ")");
             }
             Expr::Id(ty, value) => {
-                let value = Box::new(Self::of(value, place));
+                let value = Box::new(Self::of(value, scope));
                 return Self::Around(format!("{ty}("), value, ")");
             }
             Expr::Choice(item, variant, record) => {
                 let open = format!("{}::{}(", item.ty.name, variant.name);
-                return Self::Around(open, Box::new(Self::record(record, place)), ")");
+                return Self::Around(open, Box::new(Self::record(record, scope)), ")");
             }
             Expr::List(items) => {
-                let items = items.iter().map(|item| Self::of(item, place));
-                return Self::List(items.collect(), place);
+                let items = items.iter().map(|item| Self::of(item, scope));
+                return Self::List(items.collect(), scope);
             }
-            Expr::Record(record) => return Self::record(record, place),
+            Expr::Record(record) => return Self::record(record, scope),
         })
     }
 
-    fn record(record: &Record<'_>, place: Place) -> Self {
+    fn record(record: &Record<'_>, scope: ConstantScope) -> Self {
         let name = record.item.ty.name.to_string();
         let members = record.members.iter();
-        match place {
-            Place::Inside => {
+        match scope {
+            ConstantScope::Package => {
                 let fields = members.map(|(field, value)| {
                     let value = match value {
                         Some(value) if field.optional => {
-                            let value = Box::new(Self::of(value, place));
+                            let value = Box::new(Self::of(value, scope));
                             Self::Around("Some(".to_owned(), value, ")")
                         }
-                        Some(value) => Self::of(value, place),
+                        Some(value) => Self::of(value, scope),
                         None => Self::Atom("None".to_owned()),
                     };
                     (field.name.to_string(), value)
@@ -111,7 +111,7 @@ impl Spelling {
                 let extra = (extra_name(record.item.fields()), extra);
                 Self::Literal(name, fields.chain([extra]).collect())
             }
-            Place::Outside => {
+            ConstantScope::Program => {
                 let by_name = record.item.has_field_type();
                 let (mut required, mut optional) = (Vec::new(), Vec::new());
                 for (field, value) in members {
@@ -119,7 +119,7 @@ impl Spelling {
                     let value = match value {
                         // `new` and setters take a literal; a field does not.
                         Expr::Text(text) if field.optional || !by_name => Self::Atom(literal(text)),
-                        value => Self::of(value, place),
+                        value => Self::of(value, scope),
                     };
                     if field.optional {
                         let name = field.name.trim_start_matches("r#");
@@ -142,12 +142,12 @@ impl Spelling {
         match self {
             Self::Atom(text) => Some(text.clone()),
             Self::Around(open, inner, close) => Some([open, &*inner.flat()?, close].concat()),
-            Self::List(items, place) => {
-                if items.is_empty() && *place == Place::Inside {
+            Self::List(items, scope) => {
+                if items.is_empty() && *scope == ConstantScope::Package {
                     return Some("Vec::new()".to_owned());
                 }
                 let text = joined(&mut items.iter())?;
-                let fits = *place == Place::Outside || text.len() <= LIST_WIDTH;
+                let fits = *scope == ConstantScope::Program || text.len() <= LIST_WIDTH;
                 fits.then(|| format!("vec![{text}]"))
             }
             Self::Literal(..) => None,
@@ -172,7 +172,7 @@ impl Spelling {
             Self::Around(open, inner, close) => {
                 [open, &*inner.laid_out(used + open.len()), close].concat()
             }
-            Self::List(items, Place::Inside) if items.len() == 1 => {
+            Self::List(items, ConstantScope::Package) if items.len() == 1 => {
                 let only: String = items.iter().map(|item| item.laid_out(used)).collect();
                 format!("vec![{only}]")
             }

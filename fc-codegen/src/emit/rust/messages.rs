@@ -2,7 +2,7 @@
 
 use super::calls;
 use super::conditions;
-use super::constants::{Place, extra_name, spelled};
+use super::constants::{ConstantScope, extra_name, spelled};
 use super::context::Context;
 use super::enums::{enum_wire, enumeration};
 use super::literal::{literal, number};
@@ -181,7 +181,7 @@ fn structure<'m>(
 pub fn constant(value: &Expr<'_>) -> String {
     match value {
         Expr::Text(text) => literal(text),
-        value => spelled(value, Place::Inside, 0),
+        value => spelled(value, ConstantScope::Package, 0),
     }
 }
 

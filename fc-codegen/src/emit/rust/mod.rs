@@ -41,7 +41,7 @@ fn context<'m>(model: &'m Model, targets: &Targets) -> Context<'m> {
 pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
     let context = &context(model, targets);
     let mut files: Vec<File<'_>> = vec![
-        file(samples::SHOWN.file, || {
+        file(samples::TAB.file, || {
             samples::samples_file(context, targets.krate())
         }),
         file("src/blocking.rs", || blocking::blocking_file(context)),

@@ -2,17 +2,17 @@
 //!
 //! A test of the generated crate contains the same text, so no sample can become invalid.
 
-use super::constants::{Place, indented, spelled_record};
+use super::constants::{ConstantScope, indented, spelled_record};
 use super::context::Context;
 use super::robot::signature;
 use super::source::{RUST, Source};
 use crate::package::expr::Record;
 use crate::package::language::RUST as LANGUAGE;
 use crate::package::name::free;
-use crate::package::samples::{BYTES, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::samples::{BYTES, Sample, SampleRun, SampleStep, SampleTab, Verb};
 
 /// The Rust samples on the pages.
-pub const SHOWN: Shown = Shown {
+pub const TAB: SampleTab = SampleTab {
     fence: "rust",
     file: "tests/samples.rs",
     language: &LANGUAGE,
@@ -46,7 +46,7 @@ fn write(out: &mut Source, context: &Context<'_>, sample: &Sample<'_, '_>) {
             let refusal = runtime(context, "Refusal");
             let types = [&*cx, &request, &call.response.ty.name, &refusal];
             signature(out, call.method, types, " {");
-            let answer = spelled_record(answer, Place::Outside, 0);
+            let answer = spelled_record(answer, ConstantScope::Program, 0);
             out.line(indented(&format!(
                 "println!(\"{{}} asks: {{request:?}}\", context.peer);\nOk({answer})\n"
             )));
@@ -93,7 +93,7 @@ fn runtime(context: &Context<'_>, name: &str) -> String {
 }
 
 fn assign(out: &mut Source, name: &str, value: &Record<'_>) {
-    let value = spelled_record(value, Place::Outside, name.len() + 8);
+    let value = spelled_record(value, ConstantScope::Program, name.len() + 8);
     out.line(format!("let {name} = {value};"));
 }
 

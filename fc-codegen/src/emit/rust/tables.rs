@@ -1,6 +1,6 @@
 //! `tables.rs`: the spec's tables of constants. Each is a function that returns its rows as typed values.
 
-use super::constants::{Place, spelled};
+use super::constants::{ConstantScope, spelled};
 use super::context::Context;
 use super::source::Source;
 use crate::package::about;
@@ -86,6 +86,6 @@ fn table_function(
     out.block(format!("pub fn {}() -> Vec<{row}>", table.name), |out| {
         let rows = package.rows(table);
         used.all_in(&rows);
-        out.line(spelled(&rows, Place::Inside, 4));
+        out.line(spelled(&rows, ConstantScope::Package, 4));
     });
 }

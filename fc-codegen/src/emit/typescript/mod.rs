@@ -92,7 +92,7 @@ pub fn emit(model: &Model, targets: &Targets) -> Vec<Artifact> {
         ("operations.ts", protocol::file(context, groups)),
         ("protocol.ts", described::file(context, samples)),
         ("robot.ts", robot::file(context, groups)),
-        (samples::SHOWN.file, samples::file(context)),
+        (samples::TAB.file, samples::file(context)),
         ("tables.ts", tables::file(context)),
         ("wire.ts", wire::file(context)),
     ] {

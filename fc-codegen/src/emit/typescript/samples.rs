@@ -9,7 +9,7 @@ use crate::package::docs::Docs;
 use crate::package::expr::Record;
 use crate::package::language::{Role, TYPESCRIPT as LANGUAGE};
 use crate::package::name::free;
-use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, Shown, Verb};
+use crate::package::samples::{BYTES, PAGE_WIDTH, Sample, SampleRun, SampleStep, SampleTab, Verb};
 use crate::package::style::Style;
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ static ON_PAGES: Style = Style {
 };
 
 /// The TypeScript samples on the pages.
-pub const SHOWN: Shown = Shown {
+pub const TAB: SampleTab = SampleTab {
     fence: "ts",
     file: "samples.ts",
     language: &LANGUAGE,

@@ -34,7 +34,7 @@ pub(in crate::emit) fn json_cases() -> Vec<JsonCase> {
     ];
     let mut cases = Vec::new();
     for (rule, table) in tables {
-        cases.extend(table.iter().map(|case| case.of(rule)));
+        cases.extend(table.iter().map(|case| case.with(rule)));
         if rule == JsonRule::Integers {
             for kind in IntKind::ALL.iter().copied() {
                 edges(kind.name(), kind.range(), &mut cases);
@@ -56,7 +56,7 @@ struct Row {
 }
 
 impl Row {
-    fn of(&self, rule: JsonRule) -> JsonCase {
+    fn with(&self, rule: JsonRule) -> JsonCase {
         JsonCase {
             rule,
             name: self.name.to_owned(),

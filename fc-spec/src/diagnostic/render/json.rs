@@ -23,14 +23,14 @@ struct Fault<'a> {
     severity: &'static str,
     title: &'static str,
     message: &'a str,
-    primary: Place<'a>,
-    secondary: Vec<Place<'a>>,
+    primary: Location<'a>,
+    secondary: Vec<Location<'a>>,
     notes: Vec<&'a str>,
     fixes: Vec<Fix<'a>>,
 }
 
 #[derive(Serialize)]
-struct Place<'a> {
+struct Location<'a> {
     path: &'a str,
     line: usize,
     column: usize,
@@ -45,7 +45,7 @@ struct Place<'a> {
 struct Fix<'a> {
     message: &'a str,
     replacement: &'a str,
-    place: Place<'a>,
+    place: Location<'a>,
 }
 
 impl<'a> Fault<'a> {
@@ -55,11 +55,11 @@ impl<'a> Fault<'a> {
             severity: fault.severity.name(),
             title: fault.code.title(lang),
             message: lang.text(&fault.message),
-            primary: Place::new(fault.primary.span, lang.text(&fault.primary.text), sources),
+            primary: Location::new(fault.primary.span, lang.text(&fault.primary.text), sources),
             secondary: fault
                 .secondary
                 .iter()
-                .map(|label| Place::new(label.span, lang.text(&label.text), sources))
+                .map(|label| Location::new(label.span, lang.text(&label.text), sources))
                 .collect(),
             notes: fault.notes.iter().map(|note| lang.text(note)).collect(),
             fixes: fault
@@ -68,14 +68,14 @@ impl<'a> Fault<'a> {
                 .map(|fix| Fix {
                     message: lang.text(&fix.message),
                     replacement: &fix.replacement,
-                    place: Place::new(fix.span, "", sources),
+                    place: Location::new(fix.span, "", sources),
                 })
                 .collect(),
         }
     }
 }
 
-impl<'a> Place<'a> {
+impl<'a> Location<'a> {
     fn new(span: Span, label: &'a str, sources: &'a Sources) -> Self {
         let (first, last) = sources.ends(span);
         Self {

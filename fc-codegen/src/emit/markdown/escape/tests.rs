@@ -1,15 +1,15 @@
 use super::*;
 
-fn check(place: Place<'_>, cases: &[(&str, &str)]) {
+fn check(slot: Slot<'_>, cases: &[(&str, &str)]) {
     for (source, expected) in cases {
-        assert_eq!(write(source, place), *expected, "{source} in {place:?}");
+        assert_eq!(write(source, slot), *expected, "{source} in {slot:?}");
     }
 }
 
 #[test]
 fn texts_stay_in_their_place() {
     check(
-        Place::Line,
+        Slot::Line,
         &[
             ("a <b> c", "a &lt;b> c"),
             ("`a <b>` c", "`a <b>` c"),
@@ -37,7 +37,7 @@ fn texts_stay_in_their_place() {
 #[test]
 fn a_backslash_at_the_end_is_text() {
     check(
-        Place::Line,
+        Slot::Line,
         &[
             ("a\\", "a\\\\"),
             ("a\\\\", "a\\\\"),
@@ -45,9 +45,9 @@ fn a_backslash_at_the_end_is_text() {
             ("\\d", "\\d"),
         ],
     );
-    check(Place::Cell, &[("a\\\nb\\", "a\\\\<br>b\\\\")]);
+    check(Slot::Cell, &[("a\\\nb\\", "a\\\\<br>b\\\\")]);
     check(
-        Place::Label,
+        Slot::Label,
         &[("a\\", "a\\\\"), ("a [b] `[c]` \\]", "a \\[b\\] `[c]` \\]")],
     );
 }
@@ -55,7 +55,7 @@ fn a_backslash_at_the_end_is_text() {
 #[test]
 fn lines_begin_no_other_block() {
     check(
-        Place::Line,
+        Slot::Line,
         &[
             ("# a #", "\\# a \\#"),
             ("C#", "C#"),
@@ -70,7 +70,7 @@ fn lines_begin_no_other_block() {
         ],
     );
     check(
-        Place::Prose,
+        Slot::Prose,
         &[
             ("a\n---\n# b\n- c", "a\n\\---\n\\# b\n- c"),
             ("a ` b\n\n` <c>", "a \\` b\n\n\\` &lt;c>"),
@@ -81,14 +81,14 @@ fn lines_begin_no_other_block() {
 
 #[test]
 fn cells_hold_one_line_and_no_bar() {
-    check(Place::Cell, &[("a|b\n`c|d`", "a\\|b<br>`c\\|d`")]);
-    check(Place::CodeCell, &[("a|b", "`a\\|b`")]);
+    check(Slot::Cell, &[("a|b\n`c|d`", "a\\|b<br>`c\\|d`")]);
+    check(Slot::CodeCell, &[("a|b", "`a\\|b`")]);
 }
 
 #[test]
 fn code_spans_outlast_their_backticks() {
     check(
-        Place::Code,
+        Slot::Code,
         &[
             ("a", "`a`"),
             ("a`b", "``a`b``"),
@@ -96,13 +96,13 @@ fn code_spans_outlast_their_backticks() {
             (" ", ""),
         ],
     );
-    check(Place::Fence("text"), &[("```", "````text\n```\n````")]);
+    check(Slot::Fence("text"), &[("```", "````text\n```\n````")]);
 }
 
 #[test]
 fn prose_keeps_its_fences() {
     check(
-        Place::Prose,
+        Slot::Prose,
         &[
             (
                 "a {b}\n\n```text\n{{ c }} <d>\n```\n\n<e>\n",
@@ -122,23 +122,23 @@ fn prose_keeps_its_fences() {
 fn vitepress_obeys_no_comment() {
     let text = "Say <!--@include: ../secret.txt-->";
     check(
-        Place::Fence("json"),
+        Slot::Fence("json"),
         &[(
             text,
             "<pre v-pre><code>Say &lt;!--@include: ../secret.txt--&gt;</code></pre>",
         )],
     );
     check(
-        Place::FrontMatter,
+        Slot::FrontMatter,
         &[(text, "\"Say ＜!--@include: ../secret.txt-->\"")],
     );
-    check(Place::Attribute, &[("a\"<b\nc", "a&quot;&lt;b c")]);
+    check(Slot::Attribute, &[("a\"<b\nc", "a&quot;&lt;b c")]);
 }
 
 #[test]
 fn a_title_ends_no_script() {
     check(
-        Place::FrontMatter,
+        Slot::FrontMatter,
         &[
             ("a </script> < 3", "\"a ＜/script> < 3\""),
             ("a\"b\\", "\"a\\\"b\\\\\""),
@@ -150,26 +150,26 @@ fn a_title_ends_no_script() {
 fn invisible_characters_are_spelled() {
     let hostile = "a\u{202e}b\0c\u{1b}d\u{2028}e\u{fdd0}f\u{e0001}";
     let shown = "a\\u202eb\\u0000c\\u001bd\\u2028e\\ufdd0f\\udb40\\udc01";
-    for place in [
-        Place::Line,
-        Place::Cell,
-        Place::Label,
-        Place::Prose,
-        Place::Diagram,
-        Place::Data,
+    for slot in [
+        Slot::Line,
+        Slot::Cell,
+        Slot::Label,
+        Slot::Prose,
+        Slot::Diagram,
+        Slot::Data,
     ] {
-        assert_eq!(write(hostile, place), shown, "{place:?}");
+        assert_eq!(write(hostile, slot), shown, "{slot:?}");
     }
-    assert_eq!(write(hostile, Place::Code), format!("`{shown}`"));
+    assert_eq!(write(hostile, Slot::Code), format!("`{shown}`"));
     // YAML decodes the spelling instead of the character.
     let spelled = shown.replace('\\', "\\\\");
-    assert_eq!(write(hostile, Place::FrontMatter), format!("\"{spelled}\""));
+    assert_eq!(write(hostile, Slot::FrontMatter), format!("\"{spelled}\""));
 }
 
 #[test]
 fn targets_have_nothing_that_ends_a_link() {
     check(
-        Place::Target,
+        Slot::Target,
         &[
             ("../a b(1).yaml#x-序.2E.", "../a%20b%281%29.yaml#x-序.2E."),
             ("a\\<b>", "a%5C%3Cb%3E"),

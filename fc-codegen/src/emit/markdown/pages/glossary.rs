@@ -51,7 +51,7 @@ fn uses<'m>(desk: Desk<'_, 'm>) -> HashMap<&'m str, Vec<Link>> {
     let mut uses: HashMap<&str, Vec<Link>> = HashMap::new();
     for (link, texts) in operations.chain(shared) {
         let texts: Vec<&str> = texts.into_iter().map(|text| desk.lang.text(text)).collect();
-        for term in book.terms(desk.lang).of(&texts.join("\n")) {
+        for term in book.terms(desk.lang).in_text(&texts.join("\n")) {
             uses.entry(&term.id).or_default().push(link.clone());
         }
     }
