@@ -1,8 +1,8 @@
-// Codes that no operation has: where they are, and what they are for.
+// Unused command codes: their ranges, and the purpose of each range.
 
 import { hexNumber, protocol } from '../lab/fc'
 
-/** Codes that follow one another, all of one range and all without an operation. */
+/** A run of consecutive codes of one range, all without an operation. */
 export interface UnusedRun {
   first: number
   last: number
@@ -13,11 +13,11 @@ export interface UnusedRun {
 /** The anchor of a code on the page of codes. */
 export const codeAnchor = (code: number) => `0x${hexNumber(code, 4).slice(2).toLowerCase()}`
 
-/** New operations take codes of these ranges, and of no others. */
+/** New operations take their codes only from these ranges. */
 const OPEN = ['commands', 'reports']
 export const isOpen = ({ use }: { use: string }) => OPEN.includes(use)
 
-/** The runs of unused codes of all ranges, in the order of the ranges. `taken` are codes in use, and retired ones. */
+/** The runs of unused codes of all ranges, in the order of the ranges. `taken` has the used and the retired codes. */
 export function unusedRuns(taken: Set<number>): UnusedRun[] {
   const runs: UnusedRun[] = []
   protocol.ranges.forEach(({ first, last }, range) => {
@@ -31,7 +31,7 @@ export function unusedRuns(taken: Set<number>): UnusedRun[] {
   return runs
 }
 
-/** The next free code of a range: the one after the largest that is taken, or the first gap, as `fcproto new` finds it. */
+/** The next free code of a range, as `fcproto new` finds it: the one after the largest taken code, or the first gap. */
 export function nextFree(range: number, taken: Set<number>): number | undefined {
   const { first, last } = protocol.ranges[range]
   const all = Array.from({ length: last - first + 1 }, (_, offset) => first + offset)

@@ -15,7 +15,7 @@ import { PRESS_AT_ONCE } from './theme/samples'
 
 type Language = 'zh' | 'en'
 
-/** Guides in the order in which one reads them. */
+/** The guides, in the order of reading. */
 const GUIDES: [page: string, zh: string, en: string][] = [
   ['first-call', '五分钟完成第一次调用', 'First call in five minutes'],
   ['first-call-typescript', '第一次调用：TypeScript', 'First call in TypeScript'],
@@ -67,7 +67,7 @@ const REFERENCE: [page: string, zh: string, en: string][] = [
 
 const written = (page: string) => existsSync(fileURLToPath(new URL(`../${page}.md`, import.meta.url)))
 
-/** The sidebar: guides by hand, the reference by group, the spec's sources. */
+/** The sidebar: the handwritten guides, the reference by group, the sources of the spec. */
 function sidebar(language: Language): DefaultTheme.SidebarItem[] {
   const base = language === 'zh' ? '/' : '/en/'
   const pick = (zh: string, en: string) => (language === 'zh' ? zh : en)
@@ -112,7 +112,7 @@ export default defineConfig({
   head: [
     ['meta', { name: 'theme-color', content: '#0f766e' }],
     ['script', {}, PRESS_AT_ONCE],
-    // Parts that need scripts do not show without them.
+    // Without scripts, parts that need them are hidden.
     ['noscript', {}, '<style>.fc-scripted { display: none !important; } .fc-rest, .fc-unscripted { display: block; }</style>'],
   ],
   markdown: {
@@ -132,7 +132,7 @@ export default defineConfig({
   },
   transformHead({ pageData, siteData }) {
     const moved = movedFrom(pageData.relativePath)
-    // VitePress adds the base to no link in the head.
+    // VitePress adds no base to links in the head.
     const icon: HeadConfig = ['link', { rel: 'icon', type: 'image/svg+xml', href: `${siteData.base}mark.svg` }]
     return moved ? [icon, ['script', {}, leadOn(moved)]] : [icon]
   },

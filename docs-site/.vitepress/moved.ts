@@ -1,13 +1,13 @@
 // Sections that have moved to another page. Old links to them lead to the new page: VitePress has no redirects.
 
 interface Moved {
-  /** The new place of each anchor that has left the page. */
+  /** The new address of each anchor that has left the page. */
   anchors?: Record<string, string>
-  /** The page of every other anchor that the page does not have. */
+  /** The page of all other anchors that this page lacks. */
   others?: string
 }
 
-/** By page, without its ending; places are relative to the page. */
+/** By page, without its extension. Addresses are relative to the page. */
 export const MOVED: Record<string, Moved> = {
   'guides/connection': {
     anchors: { several: 'connection-robot.html#several', data: 'data-port.html' },
@@ -27,7 +27,7 @@ export const MOVED: Record<string, Moved> = {
   },
 }
 
-/** A script for the head of a page: opens the new place of the anchor in the address. */
+/** A script for the head of a page. It opens the new address of an anchor. */
 export function leadOn({ anchors = {}, others }: Moved): string {
   const known = `const to=new Map(${JSON.stringify(Object.entries(anchors))}).get(a)
 if(to)location.replace(to)`
@@ -38,5 +38,5 @@ if(!a)return
 ${known}${others ? unknown : ''}})()`
 }
 
-/** What has moved away from a page, by the page's file: `en/guides/promises.md`. */
+/** The moved sections of a page, by its file: `en/guides/promises.md`. */
 export const movedFrom = (file: string): Moved | undefined => MOVED[file.replace(/^en\//, '').replace(/\.md$/, '')]

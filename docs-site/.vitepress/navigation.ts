@@ -1,4 +1,4 @@
-// Groups and their operations in both languages, as `fcproto generate` writes them beside the pages.
+// Groups and their operations in both languages. `fcproto generate` writes them next to the pages.
 
 import { existsSync, readFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'

@@ -1,15 +1,14 @@
-// The local search: by which terms a page is found, which page comes first, and what is shown of it.
+// The local search: the terms of a page, the order of hits, and their text.
 //
-// VitePress ships these functions to the browser as text, so each must stand on its own: no imports, no helpers
-// outside its body.
+// VitePress ships these functions to the browser as text. Each must be complete: no imports, no helpers outside of it.
 
-/** Begins terms of a section that are searched and not shown. The functions below spell it themselves. */
+/** Begins the terms of a section that are searched but not shown. The functions below contain a copy. */
 export const HIDDEN = '\u2063'
 
 /**
- * Terms of a page: its words and numbers. A name gives its parts as well, and itself without strokes: `robot_sn` →
- * `robot`, `sn`, `robotsn`. A hexadecimal number is also found bare and without its zeros: `0x0A01` → `0A01`, `A01`.
- * Chinese has no spaces to split at: every pair of neighbouring characters is a term.
+ * Terms of a page: its words and numbers. A name also adds its parts, and itself without underscores: `robot_sn` →
+ * `robot`, `sn`, `robotsn`. A hexadecimal number is also a term without its prefix and its zeros: `0x0A01` → `0A01`,
+ * `A01`. Chinese has no spaces, so every pair of neighbouring characters is a term.
  */
 export function indexTerms(text: string): string[] {
   const terms: string[] = []
@@ -33,9 +32,9 @@ export function indexTerms(text: string): string[] {
 }
 
 /**
- * Terms of a query: its words. A name gives its parts, joined in every way that a language may join them; a code gives
- * the block of codes around it. Chinese gives pairs, and a single character only where the query has no more: else every
- * page would match 电 when asked for 充电. Words that only ask (how, 怎么) are left out, unless the query has no others.
+ * Terms of a query: its words. A name adds its parts, joined in each way that a language may join them. A code adds its
+ * block of codes. Chinese adds pairs, and a single character only if the query has no more. Otherwise 充电 would match
+ * every page with 电. Question words (how, 怎么) are ignored, unless the query has no others.
  */
 export function queryTerms(query: string): string[] {
   const terms = (text: string) => {
@@ -46,7 +45,7 @@ export function queryTerms(query: string): string[] {
         found.push(run, `${code.slice(0, 4)}xx`, `${code.slice(0, 5)}x`)
       } else if (/^[A-Za-z0-9_]/.test(run)) {
         found.push(run)
-        // `GetRobotSnRequest`: what lies in it is found although no page has the whole.
+        // `GetRobotSnRequest`: its parts are terms, because no page has the whole name.
         const parts = run.split(/_+|(?<=[a-z0-9])(?=[A-Z])/).filter(Boolean)
         if (parts.length < 2 || parts.length > 8) continue
         for (let from = 0; from < parts.length; from++) {
@@ -68,8 +67,8 @@ export function queryTerms(query: string): string[] {
 }
 
 /**
- * How much a hit counts by its page: the head of an operation's page most, then pages about all operations, then lists.
- * Pages for the authors of the spec come last.
+ * The weight of a hit by its page. The head of an operation's page has the largest weight, then pages about all
+ * operations, then lists. Pages for authors of the spec come last.
  */
 export function weight(id: string, _term: string, stored?: Record<string, unknown>): number {
   const page = id.split('#')[0]
@@ -81,17 +80,17 @@ export function weight(id: string, _term: string, stored?: Record<string, unknow
   // The owner of the protocol needs these.
   else if (/\/reference\/(language|errors|cli)\.html$/.test(page)) weight = 0.1
   else if (/\/guides\/(adding-a-command|changing-safely|editors|answers|releases|targets|lint|what-changed)\.html$/.test(page)) weight = 0.3
-  // A section under no other is the head of its page.
+  // A section without a parent is the head of its page.
   const head = Array.isArray(stored?.titles) && stored.titles.length === 0
   return head ? weight * 3 : weight
 }
 
 /**
- * What is done with each hit before they are sorted. One that has more of the words of the query comes before
- * one that has fewer, so that a long question still finds something and an exact one finds its page first.
+ * Prepares each hit before sorting. A hit with more words of the query comes first: a long question still finds
+ * something, and an exact one finds its page first.
  *
- * And it is shown with the text around it: the heading joins the path above it, and the text takes its place, since
- * VitePress has no other line for it. Its own excerpts fetch and draw the whole page of every hit.
+ * The hit shows its surrounding text. The heading joins the path, and the text takes the heading's line, because
+ * VitePress has no other line for it. Its own excerpts would fetch and draw the whole page of each hit.
  */
 export function finish(hit: Record<string, any>): boolean {
   hit.score *= 4 ** new Set(hit.queryTerms).size
@@ -101,20 +100,20 @@ export function finish(hit: Record<string, any>): boolean {
     .replace(/\s+/g, ' ')
     .trim()
   const lower = text.toLowerCase()
-  // The longest of its words says most: a pair before one character.
+  // The longest word is the most specific: a pair before one character.
   const words = [...hit.terms].sort((a: string, b: string) => b.length - a.length)
   const at = words.map((word: string) => lower.indexOf(word)).find((place) => place >= 0) ?? 0
   const chinese = /[\u3400-\u9fff]/.test(text.slice(at, at + 40))
   const [before, after] = chinese ? [12, 48] : [30, 110]
   let from = Math.max(0, at - before)
-  // No word is cut at the start.
+  // The text begins with a whole word.
   if (from > 0 && !chinese) from = text.indexOf(' ', from) + 1 || from
   const excerpt = (from > 0 ? '…' : '') + text.slice(from, at + after) + (at + after < text.length ? '…' : '')
   if (text) Object.assign(hit, { titles: [...hit.titles, hit.title], title: excerpt.replace(/[<>&]/g, ' ') })
   return true
 }
 
-/** Options of the index, and of a search in it. */
+/** Options of the index and of a search. */
 export const miniSearch = {
   options: { tokenize: indexTerms, storeFields: ['title', 'titles', 'text'] },
   searchOptions: {

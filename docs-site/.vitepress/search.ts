@@ -1,4 +1,4 @@
-// The local search: what of a page is found. By which terms, and which page comes first, is in `search-terms.ts`.
+// The local search: the searched part of each page. `search-terms.ts` has the terms and the order of hits.
 
 import type { DefaultTheme, MarkdownEnv, MarkdownRenderer } from 'vitepress'
 import { hexNumber, protocol } from '../lab/fc'
@@ -7,7 +7,7 @@ import { html } from './markdown/html'
 import { navigation } from './navigation'
 import { HIDDEN, miniSearch } from './search-terms'
 
-/** The operation of a page, and its group. */
+/** The operation of a page and its group. */
 function operationOf(page: string) {
   const found = /reference\/((?:commands|reports|streams)\/(\w+))\.md$/.exec(page)
   const operation = found && protocol.operations.find(({ name }) => name === found[2])
@@ -15,7 +15,7 @@ function operationOf(page: string) {
   return operation && group ? { operation, group } : null
 }
 
-/** The names that packages give an operation, its messages and its handlers, as the samples of its page spell them. */
+/** The names of an operation, its messages and its handlers in the packages, from the samples of its page. */
 function namesIn(page: string, operation: string): string {
   const bare = (name: string) => name.replaceAll('_', '').toLowerCase()
   const samples = page.match(/<pre\b[\s\S]*?<\/pre>/g)?.join(' ').replace(/<[^>]*>/g, '') ?? ''
@@ -23,7 +23,7 @@ function namesIn(page: string, operation: string): string {
   return [...names].join(' ')
 }
 
-/** A section of the page of codes for each code that no operation has, and one for all outside of the ranges. */
+/** Sections for the page of codes: one for each unused code, and one for all codes outside of the ranges. */
 function unusedCodes(page: string, language: 'zh' | 'en'): string {
   const say = (zh: string, en: string) => (language === 'en' ? en : zh)
   const section = (anchor: string, title: string, text: string, terms: string) =>
@@ -63,7 +63,7 @@ export function searched(source: string, env: MarkdownEnv, md: MarkdownRenderer)
   const aliases: string[] = env.frontmatter?.aliases ?? []
   const prose = page
     .replace(/<br>/g, ' ')
-    // Other words for the subject of a guide; a generated page has them in its text.
+    // Synonyms for the subject of a guide. A generated page has them in its text.
     .replace('</h1>', aliases.length ? `</h1><p>${html(aliases.join(' · '))}</p>` : '</h1>')
     .replace(/<(FrameBytes|SequencePicture|StatePicture|DoorLayout|ByteRuler|QuestionFilter|AudienceFilter|FrameLab)\b[^>]*>/g, '')
     .replace(/<p class="fc-badges">[\s\S]*?<\/p>/g, '')

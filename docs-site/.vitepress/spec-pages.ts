@@ -1,4 +1,4 @@
-// The YAML of the spec as pages, so that every "defined in" leads to its place.
+// The YAML of the spec as pages. Each "defined in" links to its line.
 
 import { readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url'
 
 const folder = fileURLToPath(new URL('../../spec', import.meta.url))
 
-/** Root-relative names of the spec's files without their ending, `commands/cell`. */
+/** Names of the spec's files relative to the root, without their extension: `commands/cell`. */
 export function specFiles(): string[] {
   const files = readdirSync(folder, { recursive: true, encoding: 'utf8' })
   return files
@@ -17,9 +17,9 @@ export function specFiles(): string[] {
 }
 
 /**
- * Names of places in a file, and the line (from 0) on which each stands: sections (`frame`), their entries
- * (`commands.get_station`), and answers by the first of their ids (`C040`, the next of them `C040.2`). The
- * generator links by these names, since line numbers in committed pages would change with every edit above them.
+ * Names of positions in a file, with their lines (from 0). A name is a section (`frame`), an entry
+ * (`commands.get_station`), or the first id of an answer (`C040`, then `C040.2`). The generator links by name, because
+ * line numbers in committed pages would change with each edit above them.
  */
 export function specPlaces(text: string): Map<number, string[]> {
   const places = new Map<number, string[]>()
@@ -52,6 +52,6 @@ export function specPlaces(text: string): Map<number, string[]> {
 /** The text of a file of the spec. */
 export const specText = (file: string) => readFileSync(path.join(folder, `${file}.yaml`), 'utf8').trimEnd()
 
-/** One page a file. Its fence names the file: VitePress would obey an `@include` in a text of it. */
+/** One page per file. Its fence has the file's name instead of its text, because VitePress would obey an `@include`. */
 export const specPages = () =>
   specFiles().map((file) => ({ params: { file, title: `spec/${file}.yaml` }, content: `\`\`\`fc-source\n${file}\n\`\`\`` }))

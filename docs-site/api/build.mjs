@@ -1,4 +1,4 @@
-// The reference of each package, made by the tool of its language, into the built site: `npm run build && npm run api`.
+// Writes the reference of each package into the built site, by the tool of its language: `npm run build && npm run api`.
 // A word on the command line chooses a language.
 
 import { spawnSync } from 'node:child_process'
@@ -12,17 +12,17 @@ const site = path.dirname(here)
 const root = path.dirname(site)
 const target = path.resolve(root, process.env.CARGO_TARGET_DIR ?? 'target')
 
-/** Runs a program to its end; if it fails, so does this. */
+/** Runs a program and fails if it fails. */
 function run(program, args, { cwd = root, ...env } = {}) {
   const { status, error } = spawnSync(program, args, { cwd, stdio: 'inherit', env: { ...process.env, ...env } })
   if (error) throw error
   if (status !== 0) process.exit(status ?? 1)
 }
 
-/** What makes the pages of a package in a folder that is empty. */
+/** The functions that write the pages of a package into an empty folder. */
 const LANGUAGES = {
   rust(folder) {
-    // What is there of other crates would be in the index.
+    // Old pages of other crates would be in the index.
     rmSync(path.join(target, 'doc'), { recursive: true, force: true })
     run('cargo', ['doc', '--quiet', '--locked', '--no-deps', '--all-features', '-p', 'fc-generated', '-p', 'fc-runtime'])
     cpSync(path.join(target, 'doc'), folder, { recursive: true })

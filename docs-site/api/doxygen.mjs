@@ -1,6 +1,6 @@
-// What is wrong with the C++ package, by what Doxygen has printed.
+// Finds errors of the C++ package in the output of Doxygen.
 
-/** Functions, fields and types of the runtime's headers that have no comment. There may be fewer, and never more. */
+/** The number of items without a comment in the headers of the runtime. It may only fall. */
 export const WITHOUT_COMMENT = 53
 
 const GENERATED = 'stubs/cpp/generated/'
@@ -8,15 +8,15 @@ const GENERATED = 'stubs/cpp/generated/'
 const BARE = /warning: (?:Member|Compound) .* is not documented\.$/
 const MEMBER = /Member ([\w~]+)\(.* of \w+ (?:\w+::)*(\w+) is not documented\.$/
 
-/** Constructors and operators say what they do by their names. */
+/** Constructors and operators need no comment. */
 const needsNone = (line) => {
   const [, name, owner] = MEMBER.exec(line) ?? []
   return line.includes(': Member operator') || (name !== undefined && name === owner)
 }
 
 /**
- * The lines of `printed` that a build must not have. What is generated has a comment everywhere; what Doxygen says of its texts beside
- * that is not here, for they are those of the spec.
+ * The lines of `printed` that a build must not have. Every generated item has a comment. Other warnings about generated
+ * comments are ignored, because their text comes from the spec.
  */
 export function faults(printed) {
   const lines = printed.split('\n').filter((line) => line.trim() !== '')

@@ -1,4 +1,4 @@
-// TypeDoc calls a module by its file; here it has the name by which a program imports it.
+// TypeDoc names a module after its file. This plugin uses the name that programs import.
 
 import { Converter, ReflectionKind } from 'typedoc'
 

@@ -14,7 +14,7 @@ import sys
 import zlib
 from pathlib import Path
 
-# What `fcproto inspect` prints says how a frame is laid out, so nothing of it is copied here.
+# The output of `fcproto inspect` describes the layout of a frame, so this file has no copy of it.
 PROTOCOL = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))["protocol"]
 FRAME, LIMITS = PROTOCOL["frame"], PROTOCOL["limits"]
 
@@ -64,7 +64,7 @@ def decode(frame):
         if plain_length > LIMITS["inflated_bytes"]:
             raise FrameError("inflated_too_long")
         data = inflate(data)
-    # A 0 is what some senders write on an uncompressed frame.
+    # Some senders write 0 on an uncompressed frame.
     if plain_length != len(data) and not (is_plain and plain_length == 0):
         raise FrameError("plain_length_mismatch")
     return header["head"] == RESPONSE, header["kind"], header["code"], header["id"], data

@@ -1,4 +1,4 @@
-// Captures taken apart: frames, what lies between them, what is missing at the end, and who answers whom.
+// Splits captures: frames, bytes between them, the missing part at the end, and pairs of requests and responses.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -28,7 +28,7 @@ const response = frame('response', 7)
 const next = frame('request', 8, { gzip: true })
 const garbage = [0, 1, 2, protocol.requestHead[0], 3]
 
-/** name, what is pasted, the pieces as `[is, at, length, fault]`, the level. */
+/** Name, pasted text, pieces as `[is, at, length, fault]`, level. */
 const CASES = [
   ['one frame', [request], [['frame', 0, request.length, null]], 'good'],
   ['request and response', [request, response], [['frame', 0, request.length, null], ['frame', request.length, response.length, null]], 'good'],
@@ -88,7 +88,7 @@ for (const [name, parts, pieces, level] of CASES) {
 test('an incomplete frame shows the number of missing bytes', () => {
   const last = (...parts) => read(...parts).pieces.at(-1).missing
   assert.deepEqual(last(request, response.slice(0, -12)), { bytes: 12, atLeast: false })
-  // Without its length only the header's is known.
+  // Without its length, only the length of the header is known.
   assert.deepEqual(last(request.slice(0, 3)), { bytes: protocol.headerLength - 3, atLeast: true })
   assert.equal(last(request), null)
 })
@@ -108,7 +108,7 @@ test('an unknown head is not explained as a request', () => {
   const parts = lab.partsOf(protocol, piece.decoded)
   assert.equal(parts[0].en, 'Not a frame head')
   assert.ok(parts[0].fault)
-  // Nor is what follows it explained as a header.
+  // The bytes after it are not explained as a header either.
   assert.deepEqual(parts.map(({ offset, size }) => [offset, size]), [[0, 2], [2, 2]])
   for (const [head, text] of [[request, 'Request'], [response, 'Response']]) {
     assert.equal(lab.partsOf(protocol, lab.decodeFrame(codec, head))[0].en, text)
@@ -151,10 +151,10 @@ test('comments are taken out of JSON, and nothing else', () => {
 test('the state survives an address, and a foreign address has none', () => {
   const state = { paste: 'FC AA\n中', operation: operation.name, side: 'response', id: 9, gzip: true, json: null }
   assert.deepEqual(lab.fromHash('#' + lab.toHash(state)), state)
-  // An emptied box for the id gives no number; the rest stays.
+  // An empty box for the id gives no number. The other parts stay.
   assert.deepEqual(lab.fromHash(lab.toHash({ ...state, id: '' })), { ...state, id: 1 })
   assert.match(lab.toHash(state), /^lab=[A-Za-z0-9_-]+$/)
-  // A frame of another page links to the laboratory by its bytes.
+  // A frame on another page links to the lab with its bytes.
   assert.equal(lab.fromHash('#hex=fcAA01')?.paste, 'FC AA 01')
   for (const other of ['#hex=', '#hex=f', '#hex=zz', '', '#decode', '#lab=', '#lab=!!', '#lab=AAAA', '#' + lab.toHash({ ...state, side: 'x' })]) {
     assert.equal(lab.fromHash(other), null, other)

@@ -1,5 +1,5 @@
-// MD5 and gzip of the laboratory. The package under it has all golden vectors in its own tests; here it does
-// those about frames with the libraries of the site.
+// MD5 and gzip of the frame lab. The package's own tests cover all golden frames. These tests repeat those about frames
+// with the libraries of the site.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'

@@ -1,4 +1,4 @@
-// The table of who runs which cases says what the files of the cases and the packages' READMEs say.
+// The table of cases per language agrees with the files of the cases and with the READMEs of the packages.
 
 import assert from 'node:assert/strict'
 import { execFileSync } from 'node:child_process'
@@ -9,7 +9,7 @@ import { root, site } from './support.mjs'
 
 const program = (...options) => execFileSync('python3', [path.join(root, 'conformance/table'), ...options], { encoding: 'utf8' })
 
-/** `{ cells, languages }` of a page: the rows of its table, each by its kind. */
+/** `{ cells, languages }` of a page: the rows of its table by kind. */
 function table(folder) {
   const lines = readFileSync(path.join(site, folder, 'porting.md'), 'utf8').split('\n')
   const from = lines.findIndex((line) => line.includes('{#table}'))
@@ -27,7 +27,7 @@ for (const folder of ['guides', 'en/guides']) {
     assert.deepEqual(Object.keys(cells), Object.keys(totals))
     for (const [kind, { number }] of Object.entries(cells)) {
       const said = Number(number.replace(/[,+]/g, ''))
-      // Each command of the spec brings some: a page that said how many would be wrong after the next.
+      // Each command of the spec adds cases. A number on the page would be wrong after the next command.
       if (kind === 'accepted' || kind === 'rejected') assert.ok(number.endsWith('+') && totals[kind] >= said, `${kind}: ${number}`)
       else assert.equal(said, totals[kind], kind)
     }

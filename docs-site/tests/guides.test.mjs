@@ -1,5 +1,5 @@
-// The guides do as they say: the commands of each page run in a fresh copy of the project and print what that page shows, both
-// languages have the same commands and samples, and what is pulled in exists. `BLESS=1` writes what the commands print into the pages.
+// Runs the commands of each guide in a fresh copy of the project and compares the output with the page. Both languages
+// must have the same commands and samples, and included files must exist. `BLESS=1` writes the output into the pages.
 
 import assert from 'node:assert/strict'
 import { execFileSync, spawnSync } from 'node:child_process'
@@ -10,18 +10,18 @@ import { after, test } from 'node:test'
 import { isDeepStrictEqual } from 'node:util'
 import { needs, root, site } from './support.mjs'
 
-/** Guides that this test looks after: those with a Chinese and an English text written here. */
+/** The guides of this test: those with a handwritten Chinese and English page. */
 const guides = readdirSync(path.join(site, 'guides'))
   .filter((name) => name.endsWith('.md'))
   .map((name) => name.slice(0, -'.md'.length))
 
-/** Where the pages of each language are. */
+/** The directory of the pages of each language. */
 const FOLDERS = { zh: 'guides', en: 'en/guides' }
 
 /** A fence: its ticks, its kind and its text. */
 const FENCE = /^(`{3,})([^\n`]*)\n([\s\S]*?)^\1$/gm
 
-/** The fences of a page, `{ info, text }`, and the files it pulls in. */
+/** The fences of a page, `{ info, text }`, and its included files. */
 function parts(file) {
   const source = readFileSync(file, 'utf8')
   const fences = Array.from(source.matchAll(FENCE), ([, , info, text]) => ({ info: info.trim(), text }))
@@ -39,8 +39,8 @@ function pagesOf(guide) {
 }
 
 /**
- * A fence without the language of its page: commands may differ in `--lang zh` and `--lang en`, and in `X.md` and `X.en.md` of files
- * that are there in both languages; the output is compared with that of the page's own commands.
+ * A fence without the language of its page. Commands may differ in `--lang zh` and `--lang en`. They may also differ in
+ * `X.md` and `X.en.md` if both files exist. The output is compared with that of the page's own commands.
  */
 function withoutLanguage({ info, text }) {
   if (info === 'text output') return { info }
@@ -49,7 +49,7 @@ function withoutLanguage({ info, text }) {
   return { info, text: info === 'sh' ? text.replace(/--lang (?:zh|en)\b/g, '--lang').replaceAll('.en.md', '.md') : text }
 }
 
-/** Writes into a page what its commands have printed: texts by the position of their fence. */
+/** Writes the output of the commands into a page: texts by the position of their fence. */
 function write(file, printed) {
   let position = 0
   const source = readFileSync(file, 'utf8')
@@ -80,7 +80,7 @@ for (const guide of guides) {
   })
 }
 
-/** What every guide needs, and what some need beside: a name, and the command that succeeds where it is there. */
+/** The needs of all guides and of single guides: a name, and a command that succeeds if the need is met. */
 const EVERY = Object.fromEntries(['cargo', 'bash', 'git', 'python3', 'npm'].map((tool) => [tool, [tool, '--version']]))
 const SOME = {
   'first-call-kotlin': { 'a JDK': ['javac', '--version'] },
@@ -93,8 +93,8 @@ const lacking = (tools) => Object.keys(tools).filter((name) => spawnSync(tools[n
 const missing = lacking(EVERY)
 
 /**
- * Makes a folder what git has, and what it would: a checkout with the changes at hand. Files that are right already
- * are left as they are, so that commands of one guide find what those of another have compiled.
+ * Makes a folder a checkout with the current changes. It does not write unchanged files again, so that a guide can use
+ * the builds of another one.
  */
 function checkOut(folder) {
   const listed = execFileSync('git', ['ls-files', '-z', '--cached', '--others', '--exclude-standard'], { cwd: root, encoding: 'utf8', maxBuffer: 1 << 26 })
@@ -112,8 +112,8 @@ function checkOut(folder) {
 }
 
 /**
- * What a guide adds to the spec gives way to what its owner has added in the same words, perhaps by
- * following the guide: returns how its commands and what they print are to be read here.
+ * Adapts a guide to a spec whose owner has already added the same names, perhaps by following the guide. Returns the
+ * replacements for its commands and their output.
  */
 function inThisSpec(folder) {
   const commands = path.join(folder, 'spec/commands')
@@ -132,7 +132,7 @@ function inThisSpec(folder) {
       .replaceAll('0x0A0E', spelled())
 }
 
-/** What the commands of all guides work in, and what they compile: builds of another folder would be of no use to them. */
+/** The folder and the builds of all guides. Builds of another folder would be useless to them. */
 const target = path.join(process.env.CARGO_TARGET_DIR ?? path.join(root, 'target'), 'guides')
 const folder = mkdtempSync(path.join(tmpdir(), 'fc-guides-'))
 after(() => [folder, target].forEach((it) => rmSync(it, { recursive: true, force: true })))

@@ -1,4 +1,4 @@
-// Links to sections that have moved lead to where these are now.
+// Links to moved sections lead to their new addresses.
 
 import assert from 'node:assert/strict'
 import { existsSync, readFileSync } from 'node:fs'
@@ -8,10 +8,10 @@ import { load, site } from './support.mjs'
 
 const { MOVED, leadOn, movedFrom } = await load(`export * from './.vitepress/moved'`)
 
-/** The anchors that a page's source gives by name. */
+/** The anchors that a page's source names. */
 const anchors = (file) => Array.from(readFileSync(file, 'utf8').matchAll(/\{#([\w-]+)\}$/gm), ([, name]) => name)
 
-/** Where the script in the head of a page leads from an anchor; `there` are the anchors of the page. */
+/** The address to which the script in a page's head leads from an anchor. `there` has the anchors of the page. */
 function led(moved, hash, there = []) {
   let to = null
   const location = { hash, replace: (place) => (to = place) }

@@ -1,5 +1,5 @@
-// What engineers paste, as their tools print it: `pastes/forms.json` has each form with the bytes in it,
-// or with what the refusal must name.
+// Pasted text, in the forms that engineers' tools print. `pastes/forms.json` has each form with its bytes, or with the
+// words that the refusal must contain.
 
 import assert from 'node:assert/strict'
 import { execFileSync } from 'node:child_process'
@@ -53,7 +53,7 @@ test('a paste of half a million bytes is decoded', () => {
   const frame = lab.messageFrame(codec, operation, { side: 'request', id: 1, gzip: false }, operation.requestExample)
   const bytes = new Uint8Array(500_000)
   for (let at = 0; at + frame.length <= bytes.length; at += frame.length) bytes.set(frame, at)
-  // Anything that grows with the square of the length does not come back from this.
+  // A quadratic search would not end within the time limit.
   const { segments } = lab.readPaste(lab.hex(bytes), heads)
   assert.equal(lab.readCapture(codec, segments).sound, Math.floor(bytes.length / frame.length))
 })
@@ -78,7 +78,7 @@ function packet([from, fromPort], [to, toPort], sequence, payload, flags = DATA)
 }
 const udp = [0x45, 0, 0, 28, 0, 0, 0, 0, 64, 17, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 0, 53, 0, 53, 0, 8, 0, 0]
 
-/** Frames of links around an IP packet, by the number of the link. */
+/** Link-layer frames around an IP packet, by link type. */
 const LINKS = {
   0: (ip) => [2, 0, 0, 0, ...ip],
   1: (ip) => [...Array(12).fill(1), 8, 0, ...ip, ...Array(6).fill(0)],
@@ -119,7 +119,7 @@ const opening = [packet(APP, ROBOT, 999, [], SYN), packet(ROBOT, APP, 4999, [], 
 const TALK = [...opening, udp, packet(APP, ROBOT, 1000, request), packet(ROBOT, APP, 5000, half), packet(ROBOT, APP, 5050, rest)]
 const web = packet([[10, 0, 0, 1], 50000], [[10, 0, 0, 2], 80], 1, [...Buffer.from('GET / HTTP/1.1')])
 
-/** name, file, the bytes of each stream. */
+/** Name, file, the bytes of each stream. */
 const FILES = [
   ...Object.keys(LINKS).map((link) => [`pcap, link ${link}`, pcap(TALK, { link: Number(link) })]),
   ['pcap, most significant byte first', pcap(TALK, { little: false })],

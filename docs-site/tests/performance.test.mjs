@@ -1,4 +1,4 @@
-// The summary of performance has the figures of the results, and leaves out no missed target.
+// The summary of performance has the figures of the results and lists every missed target.
 
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
@@ -6,7 +6,7 @@ import path from 'node:path'
 import { test } from 'node:test'
 import { site } from './support.mjs'
 
-/** `{ target, must, measured, verdict }` of the rows that name a target; the columns are known by their order. */
+/** `{ target, must, measured, verdict }` of the rows that name a target; the columns are identified by their order. */
 function targets(folder, page, columns) {
   const lines = readFileSync(path.join(site, folder, page), 'utf8').split('\n')
   const rows = lines.filter((line) => line.startsWith('|')).map((line) => line.split('|').slice(1, -1).map((cell) => cell.trim()))

@@ -1,5 +1,5 @@
-// The list of limits and settings agrees with the sources of each package, and the tests that guarantees and limits
-// name exist.
+// The list of limits and settings agrees with the sources of each package. Each test named by a guarantee or a limit
+// exists.
 
 import assert from 'node:assert/strict'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
@@ -9,7 +9,7 @@ import { root, site } from './support.mjs'
 
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase())
 
-/** Where each package has its settings, and how one is found there. */
+/** The files with the settings of each package, and the pattern of a setting. */
 const PACKAGES = {
   Rust: {
     files: ['client/config', 'server/config', 'connection_settings', 'wire'].map((name) => `fc-runtime/src/${name}.rs`),
@@ -25,7 +25,7 @@ const PACKAGES = {
   },
   Kotlin: {
     files: ['stubs/kotlin/runtime/src/main/kotlin/fc/runtime/Config.kt', 'stubs/kotlin/runtime/src/main/kotlin/fc/runtime/Protocol.kt'],
-    // A class up to the brace that closes it.
+    // A class, up to its closing brace.
     parts: /^public class (?:ClientConfig|ServerConfig|Limits)\b[^]*?^\}/gm,
     setting: (name) => `^    public fun ${camel(name)}\\(`,
   },
@@ -37,7 +37,7 @@ const PACKAGES = {
 }
 const read = (file) => readFileSync(path.join(root, file), 'utf8')
 
-/** What a package says of its settings; where the files have more than that, the parts of them that do. */
+/** The sources of a package's settings, without other parts of the files. */
 function sources(language) {
   const { files, parts } = PACKAGES[language]
   const text = files.map(read).join('\n')
@@ -95,7 +95,7 @@ const limits = readdirSync(path.join(root, 'fc-runtime/tests/it/limits')).map((n
 /** The commands of `load/`. */
 const load = read('load/src/main.rs')
 
-/** Whether a test exists, by its name in the last column of a table. */
+/** Returns `true` if a test exists, by its name in the last column of a table. */
 function isTest(name) {
   const [, crate = 'fc-runtime', module] = /^(?:(fc-\w+) )?(\w+)::$/.exec(name) ?? []
   if (module) return exists(`${crate}/tests/it/${module}.rs`, `${crate}/tests/it/${module}/mod.rs`)
@@ -105,7 +105,7 @@ function isTest(name) {
   return exists(`fc-runtime/tests/${name}.rs`, `fc-runtime/tests/${name}/main.rs`) || new RegExp(`^(?:async )?fn ${name}\\(`, 'm').test(limits)
 }
 
-/** The names in the last column of the tables whose last column is for tests. */
+/** The names in the last column of tables that end with a column of tests. */
 function named(folder, page) {
   const lines = readFileSync(path.join(site, folder, page), 'utf8').split('\n')
   let inTable = false

@@ -1,4 +1,4 @@
-// The rows in which the site shows a state diagram.
+// The rows of a state diagram on the site.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -6,7 +6,7 @@ import { load } from './support.mjs'
 
 const { chains } = await load(`export * from './.vitepress/markdown/states'`)
 
-/** `*a b`, a begins; `b c!`, c ends: a line for each arrow, as the generated pages have them. */
+/** One line per arrow, as on the generated pages. `*a b`: a is a start. `b c!`: c is an end. */
 function diagram(...lines) {
   const names = [...new Set(lines.flatMap((line) => line.replace(/[*!]/g, '').split(' ')))]
   const id = (name) => `s${names.indexOf(name)}`
@@ -23,7 +23,7 @@ function diagram(...lines) {
   return ['stateDiagram-v2', ...boxes, ...arrows].join('\n')
 }
 
-/** A row as one line: what begins has a `*`, what ends a `!`. */
+/** A row as one line. Starts have a `*`, ends a `!`. */
 const shown = (...lines) =>
   chains(diagram(...lines)).map(({ states, choice }) => {
     const row = states.map(({ name, starts, ends }) => `${starts ? '*' : ''}${name}${ends ? '!' : ''}`).join(' ')

@@ -1,4 +1,4 @@
-// What several tests share: the laboratory's engine, the golden vectors, and when a test may be skipped.
+// Shared by several tests: the engine of the lab, the golden frames, and the conditions for skipping a test.
 
 import { build } from 'esbuild'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
@@ -12,10 +12,10 @@ export const root = path.dirname(site)
 /** The built site. */
 export const dist = path.join(site, '.vitepress/dist')
 
-/** In CI nothing may be skipped. */
+/** CI skips no test. */
 export const obligatory = process.env.FC_CI === '1'
 
-/** Options for a test that needs something: a reason to skip it here, or none. */
+/** Options for a test with a need: a reason to skip it on this machine, or none. */
 export function needs(there, what) {
   if (there) return {}
   if (obligatory) throw new Error(`${what}, and CI skips nothing`)
@@ -35,7 +35,7 @@ export async function load(source) {
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`)
 }
 
-/** The laboratory's engine, with the TypeScript package that it uses. */
+/** The engine of the lab, with its TypeScript package. */
 export const engine = () =>
   load(`
     export * from './lab/codec'

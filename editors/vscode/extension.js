@@ -12,7 +12,7 @@ async function activate(context) {
   const { subscriptions } = context
   subscriptions.push(
     vscode.commands.registerCommand('fc.restart', restart),
-    // What a lens names: the server counts places as the protocol does, the editor has objects for them.
+    // The references of a lens. The server sends positions of the protocol, and the editor needs its own objects.
     vscode.commands.registerCommand('fc.showReferences', (uri, position, places) => {
       const { protocol2CodeConverter: code } = client
       const found = places.map((place) => code.asLocation(place))

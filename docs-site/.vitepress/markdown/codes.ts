@@ -1,4 +1,4 @@
-// The page of command codes: those in use, sorted, and what is free.
+// The page of command codes: the used codes, sorted, and the free ones.
 
 import { readFileSync } from 'node:fs'
 import path from 'node:path'
@@ -8,7 +8,7 @@ import type { Core, Tokens } from './tables'
 
 type Token = Tokens[number]
 
-/** The rows of a table's body: of each where it begins, where the next does, and its first cell. */
+/** The rows of a table's body: the start of each, the start of the next, and its first cell. */
 function rowsOf(tokens: Tokens, table: number) {
   const end = tokens.findIndex((token, index) => index > table && token.type === 'table_close')
   const starts = tokens.flatMap((token, index) => (index > table && index < end && token.type === 'tr_open' ? [index] : []))
@@ -16,10 +16,10 @@ function rowsOf(tokens: Tokens, table: number) {
   return starts.slice(1).map((from, row, body) => ({ from, to: body[row + 1] ?? last, first: tokens[from + 2].content }))
 }
 
-/** The table of the operations with a code: the overview has them by group, in a table each. */
+/** The table of all operations with a code. The overview has one table per group. */
 function operations(state: Parameters<Core>[0]): Tokens {
   const overview = path.join(path.dirname(state.env.path), 'index.md')
-  // VitePress makes this page again when that one changes.
+  // VitePress builds this page again after a change of that one.
   state.env.includes?.push(overview)
   const tokens = state.md.parse(readFileSync(overview, 'utf8'), {})
   const tables = tokens.flatMap((token, index) => (token.type === 'table_open' ? [index] : []))
@@ -31,17 +31,17 @@ function operations(state: Parameters<Core>[0]): Tokens {
   return [...tokens.slice(tables[first], rows[first][0].from), ...body, ...tokens.slice(end, end + 2)]
 }
 
-/** The first cell of a row with a code in use, or with one that is retired. */
+/** The first cell of a row with a used or a retired code. */
 const CODED = /^`0x[0-9A-F]{4}`(?: = |<br>)/
 
 /**
- * The map of codes. Committed, it lists neither the codes in use nor the free ones: what any new command
- * changes would keep two branches from being merged. Here it has both, the free ones first, each with an anchor.
+ * The map of codes. The committed page lists neither used nor free codes: each new command would change these
+ * lists, and two branches could not be merged. The site adds both, the free codes first, each with an anchor.
  */
 export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
   const named = page.findIndex((token) => token.type === 'heading_open' && token.attrGet('id') === 'in-use')
   const place = page.findIndex((token, index) => index > named && token.type === 'heading_close') + 1
-  // In the place of the sentence that says where they are listed.
+  // It replaces the sentence that refers to the lists.
   const rest = page.findIndex((token, index) => index > place && token.type === 'paragraph_close') + 1
   const tokens = named < 0 ? page : [...page.slice(0, place), ...operations(state), ...page.slice(rest)]
   const tables = tokens.flatMap((token, index) => (token.type === 'table_open' ? [index] : []))
@@ -79,10 +79,10 @@ export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
     const next = at >= 0 && isOpen(protocol.ranges[at]) ? nextFree(at, taken) : undefined
     const count = own.reduce((sum, { first, last }) => sum + last - first + 1, 0)
     made.push(cell(row.from, 'td', String(count)), cell(row.from, 'td', next === undefined ? '—' : `\`${hexNumber(next, 4)}\``))
-    // Those of an open range are in the list of free codes.
+    // The list of free codes has those of an open range.
     if (at >= 0 && !isOpen(protocol.ranges[at])) anchorsInto(tokens[row.from + 2], own, state)
   }
-  // From the end, so that the places of the others hold; two at one place in their order.
+  // Inserting from the end keeps the other positions valid. Two at one position keep their order.
   for (const [at, cells] of made.reverse()) tokens.splice(at, 0, ...cells)
   // Ranges for new operations come first.
   const rows = rowsOf(tokens, ranges)
@@ -94,7 +94,7 @@ export function codeMap(page: Tokens, state: Parameters<Core>[0]): Tokens {
   return tokens
 }
 
-/** A cell gets an anchor for each code of the runs. */
+/** Adds an anchor to a cell for each code of the runs. */
 function anchorsInto(cell: Token, runs: UnusedRun[], state: Parameters<Core>[0]): void {
   const anchor = new state.Token('html_inline', '', 0)
   for (const { first, last } of runs) for (let code = first; code <= last; code++) anchor.content += `<a id="${codeAnchor(code)}"></a>`

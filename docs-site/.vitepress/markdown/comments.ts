@@ -1,4 +1,4 @@
-// Samples of JSON with comments: a reader sees them, but what is copied is JSON without them.
+// Samples of JSON with comments. The copy button leaves the comments out.
 
 import type { ShikiTransformer } from 'shiki'
 
@@ -7,7 +7,7 @@ export const commentsStayBehind: ShikiTransformer = {
   span(node) {
     if (this.options.lang !== 'jsonc') return
     const [text] = node.children
-    // VitePress leaves what has this class behind when it copies.
+    // VitePress does not copy elements of this class.
     if (text?.type === 'text' && text.value.trimStart().startsWith('//')) this.addClassToHast(node, 'vp-copy-ignore')
   },
 }

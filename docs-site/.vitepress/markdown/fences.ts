@@ -1,6 +1,5 @@
-// Fences of the generated pages that the site draws: a frame's hexdump becomes the byte view, a
-// sequence or state diagram, the header's ruler and a table of layouts become pictures. Readers of the plain
-// Markdown see the text itself.
+// Fences of the generated pages that the site draws. A frame's hexdump becomes the byte view. Sequence and state
+// diagrams, the header's ruler and a table of layouts become pictures. Readers of the Markdown file see the text.
 
 import type { MarkdownRenderer } from 'vitepress'
 import { codec } from '../../lab/codec'
@@ -25,7 +24,7 @@ function frameOf(bytes: Uint8Array): string {
   return `<FrameBytes :bytes="${prop(Array.from(bytes))}" :parts="${prop(parts)}" />\n`
 }
 
-/** `get_robot_sn request`, perhaps with `gzip` behind: the frame around the spec's example. */
+/** `get_robot_sn request`, optionally followed by `gzip`: the frame of the spec's example. */
 function example(text: string): string {
   const [name, side, packed] = text.trim().split(/\s+/)
   const operation = protocol.operations.find((operation) => operation.name === name)
@@ -36,7 +35,7 @@ function example(text: string): string {
   return frameOf(bytes)
 }
 
-/** `App->>Robot: label`, `-->>` for what is sent again or only perhaps. */
+/** `App->>Robot: label`, `-->>` for a repeated or optional message. */
 const ARROW = /^\s*(App|Robot)\s*(-->>|->>)\s*(App|Robot)\s*:\s*(.+)$/
 
 function sequence(text: string): string {
@@ -72,7 +71,7 @@ function layouts(text: string): string {
 
 const ruler = () => `<ByteRuler :fields="${prop(protocol.header.map(({ name, ...field }) => ({ ...field, anchor: `header-${name}` })))}" />\n`
 
-/** YAML of the spec, each line with an anchor: its name, to which other pages link, or else its number. */
+/** YAML of the spec. Each line has an anchor: the name that other pages link to, or else its number. */
 function source(html: string, text: string): string {
   const places = specPlaces(text)
   let line = 0
@@ -91,7 +90,7 @@ const DRAWN: Record<string, (text: string) => string> = {
   mermaid,
 }
 
-/** The fence that shows a file of the spec, which it names. */
+/** A fence with a file of the spec and its name. */
 const SOURCE = 'fc-source'
 
 export function drawnFences(md: MarkdownRenderer): void {

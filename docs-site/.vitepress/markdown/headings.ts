@@ -1,4 +1,4 @@
-// Ids of headings, the same in both languages: so the outline, the search and the language switch lead to one place.
+// Ids of headings. Both languages have the same ids, for the outline, the search and the language switch.
 //
 // Generated pages have an anchor above each heading, which becomes its id. The title of a page has one id everywhere.
 // Other headings of a Chinese page without an id get that of the English page.
@@ -7,7 +7,7 @@ import { existsSync, readFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import type { MarkdownRenderer } from 'vitepress'
 
-/** A paragraph of nothing but an anchor. */
+/** A paragraph with only an anchor. */
 const ANCHOR = /^<a id="([^"]+)"><\/a>$/
 
 /** Front matter, which would parse as a heading. */

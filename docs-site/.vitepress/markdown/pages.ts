@@ -1,5 +1,5 @@
-// What the site makes of pages beyond their fences: links into the spec lead to the site's own pages of it, the line under a title becomes badges, what a picture shows already is not
-// said again, and the list of open questions and that of codes get a filter.
+// Changes to pages outside of their fences. Links into the spec lead to the site's pages of it. The line under a title
+// becomes badges. Text that a picture already shows is removed. The lists of open questions and codes get a filter.
 
 import type { MarkdownRenderer } from 'vitepress'
 import { codeMap } from './codes'
@@ -18,13 +18,13 @@ function specLinks(tokens: Tokens, english: boolean): void {
   }
 }
 
-/** The references of the packages are pages of other tools: the browser opens them, not the site. */
+/** References of packages. Other tools write these pages, so the browser opens them instead of the site's router. */
 export const API = /^\/api\//
 
 function apiLinks(tokens: Tokens): void {
   for (const token of tokens) {
     for (const child of token.children ?? []) {
-      // With `target`, VitePress would leave out the base.
+      // With `target`, VitePress would omit the base.
       if (child.type === 'link_open' && API.test(child.attrGet('href') ?? '')) child.attrJoin('class', 'vp-raw')
     }
   }
@@ -33,16 +33,16 @@ function apiLinks(tokens: Tokens): void {
 function badges(tokens: Tokens): void {
   tokens.forEach((token, index) => {
     const children = token.children ?? []
-    // Those in the cell of a table stay below each other.
+    // Links in a table cell stay below each other.
     if (tokens[index - 1]?.type !== 'paragraph_open') return
     if (!children.some((child) => child.type === 'html_inline' && child.content.startsWith('<span class="fc-badge'))) return
     tokens[index - 1].attrJoin('class', 'fc-badges')
-    // The dots between them are for readers of the plain Markdown.
+    // The dots between them serve readers of the Markdown file.
     for (const child of children) if (child.type === 'text' && child.content.trim() === '·') child.content = ' '
   })
 }
 
-/** The table behind a drawn frame says what the drawing says. */
+/** Removes the table after a drawn frame, because the drawing has the same content. */
 function withoutRepetition(tokens: Tokens): Tokens {
   const kept: Tokens = []
   let hidden = false
@@ -65,7 +65,7 @@ function filter(tokens: Tokens, state: Parameters<Core>[0]): void {
   tokens.splice(heading < 0 ? first : heading, 0, made)
 }
 
-/** Behind the list of audiences, where there is one. */
+/** Follows the list of audiences, if there is one. */
 function audienceFilter(tokens: Tokens, state: Parameters<Core>[0]): void {
   const listed = tokens.findIndex((token) => token.type === 'inline' && token.content.startsWith('<a id="audience-'))
   if (listed < 0) return

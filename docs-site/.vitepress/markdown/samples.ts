@@ -1,12 +1,12 @@
-// The same code in several languages: fences in a row that have a name, as in ```ts [TypeScript], become tabs. They are radio
-// buttons that CSS alone obeys: keys and readers of screens know them, and they work without scripts. Readers of the plain
-// Markdown see one fence below the other.
+// The same code in several languages. Consecutive fences with a name, such as ```ts [TypeScript], become tabs. The tabs
+// are radio buttons with CSS only: they work with the keyboard, with screen readers and without scripts. Readers of the
+// Markdown file see the fences one below the other.
 
 import type { MarkdownRenderer } from 'vitepress'
 import { html as escaped } from './html'
 import type { Core, Tokens } from './tables'
 
-/** A fence with a name: its language, and what its tab is called. */
+/** A fence with a name: its language and the label of its tab. */
 const NAMED = /^\w+ \[([^\]]+)\]$/
 
 function html(state: Parameters<Core>[0], text: string): Tokens[number] {
@@ -15,7 +15,7 @@ function html(state: Parameters<Core>[0], text: string): Tokens[number] {
   return token
 }
 
-/** The buttons of a row of tabs, the first of them pressed. */
+/** The buttons of a row of tabs. The first one is pressed. */
 function buttons(names: string[], row: number, label: string): string {
   const each = names.map((name, index) => {
     const id = `code-${row}-${index + 1}`

@@ -1,19 +1,19 @@
-// A state diagram of the generated pages, read into the rows in which the site shows it.
+// Converts a state diagram of the generated pages to the rows of the site's picture.
 
-/** A state, and whether a process begins or ends there. */
+/** A state, with marks for the start and the end of a process. */
 export interface State {
   name: string
   starts: boolean
   ends: boolean
 }
 
-/** States that follow one another; `choice` are those that may follow the last, where that is more than one. */
+/** Consecutive states. `choice` has the possible successors of the last one if there are several. */
 export interface Chain {
   states: State[]
   choice: string[]
 }
 
-/** `state "name" as s0`, the name of a box; `s0 --> s1`, an arrow, `[*]` being where a process begins or ends. */
+/** `state "name" as s0`, the name of a box; `s0 --> s1`, an arrow. `[*]` is the start or the end of a process. */
 const BOX = /^\s*state "(.+)" as (\S+)$/
 const CHANGE = /^\s*(\S+) --> (\S+)$/
 const OUTSIDE = '[*]'
@@ -40,8 +40,8 @@ function boxes(text: string): Box[] {
 }
 
 /**
- * The rows of a diagram: each goes on while exactly one state follows, and every arrow is in one row.
- * Those in which a process begins come first.
+ * The rows of a diagram. A row continues while exactly one state follows. Each arrow is in one row. Rows with the
+ * start of a process come first.
  */
 export function chains(text: string): Chain[] {
   const all = boxes(text)
@@ -54,7 +54,7 @@ export function chains(text: string): Chain[] {
       choice: choice.map(({ name }) => name),
     })
     for (let last = first; ; boxes.push(last)) {
-      // It ends there, or goes on in another row.
+      // The process ends there, or continues in another row.
       if (!left.delete(last)) return row([])
       if (last.then.length > 1) return row(last.then)
       last = last.then[0]
@@ -63,7 +63,7 @@ export function chains(text: string): Chain[] {
   const heads = [
     ...all.filter(({ starts }) => starts),
     ...all.filter((box) => !box.starts && !follows(box)),
-    // The rest is entered by a row above, or goes round in a circle.
+    // The rest follows a row above or is a circle.
     ...all,
   ]
   const rows: Chain[] = []

@@ -1,6 +1,5 @@
-// Tables that fit every screen. Fields nest visibly and each can be linked to; of any other wide table
-// each row becomes a card on a phone, whose lines are named after the columns; names in code may break
-// between their words.
+// Tables that fit every screen. Tables of fields show nesting, and each field has a link. On a phone, each row of
+// another wide table becomes a card with one line per column. Names in code may break between their words.
 
 import type { MarkdownRenderer } from 'vitepress'
 
@@ -9,12 +8,12 @@ export type Tokens = Parameters<Core>[0]['tokens']
 type State = Parameters<Core>[0]
 type Token = Tokens[number]
 
-/** More columns than a phone has room for. */
+/** A table with more columns than fit on a phone. */
 const WIDE = 4
 
 interface Row {
   open: Token
-  /** The opening of each cell and what it holds. */
+  /** The opening and the content of each cell. */
   cells: { open: Token; content: Token }[]
 }
 
@@ -33,7 +32,7 @@ function* found(tokens: Tokens): Generator<{ open: Token; heads: string[]; rows:
   }
 }
 
-/** What a cell says, up to its first line break. */
+/** The text of a cell, up to its first line break. */
 function words(cell: Token): string {
   const children = cell.children ?? []
   const end = children.findIndex(({ type, content }) => type === 'html_inline' && content.startsWith('<br'))
@@ -43,14 +42,14 @@ function words(cell: Token): string {
 
 const ANCHOR = /^<a id="([^"]+)">$/
 
-/** A table of fields: every row begins with an anchor, and there is nothing but key, type, presence and meaning. */
+/** A table of fields: each row begins with an anchor, and the columns are key, type, presence and meaning. */
 const listsFields = (heads: string[], rows: Row[]) =>
   heads.length === 4 && rows.every(({ cells }) => ANCHOR.test(cells[0].content.children?.[0]?.content ?? ''))
 
-/** Spaces of an em, by which the plain Markdown sets rows in. */
+/** Em spaces, which indent rows in the Markdown file. */
 const INDENT = /^\u2003*/
 
-/** Anchors move to the rows, steps to the style, and each field gets a link to itself. */
+/** Moves anchors to the rows and indentation to the style, and adds a link to each field. */
 function fields(rows: Row[], state: State, english: boolean): void {
   const path: string[] = []
   for (const { open, cells } of rows) {
@@ -60,7 +59,7 @@ function fields(rows: Row[], state: State, english: boolean): void {
     const depth = rest[0].type === 'text' ? INDENT.exec(rest[0].content)![0].length : 0
     rest[0].content = rest[0].content.slice(depth)
     const name = rest.find((child) => child.type === 'code_inline')
-    // A form has a word before its name, and adds nothing to the path.
+    // The name of a one-of form follows a word, and is not part of the path.
     const form = rest.some((child) => child.type === 'text' && child.content.trim())
     path.length = depth
     path.push(form ? '' : (name?.content ?? '') + (words(type).startsWith('[') ? '[]' : ''))
@@ -75,7 +74,7 @@ function fields(rows: Row[], state: State, english: boolean): void {
   }
 }
 
-/** Where a name may be broken: behind its dots, bars and strokes, and before its capitals. Numbers stay whole. */
+/** Positions at which a name may break: after dots, bars and underscores, and before capitals. Numbers do not break. */
 export const breakable = (html: string) =>
   html.replace(/([_./:=]|-+(?=\w)|(?<=[a-z])(?<!0x)(?=[A-Z]))/g, (at) => `${at}<wbr>`)
 

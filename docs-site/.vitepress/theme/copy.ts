@@ -1,7 +1,6 @@
-// Copying, also where the browser has no clipboard to offer: it has none on a page over plain http,
-// such as a site on a local network.
+// Copies a text. On a page over plain HTTP, such as a site on a local network, browsers offer no clipboard.
 
-/** Whether the text is on the clipboard now. */
+/** Returns `true` if the text is now on the clipboard. */
 export async function copyText(text: string): Promise<boolean> {
   try {
     await navigator.clipboard.writeText(text)
@@ -19,7 +18,7 @@ function copyBySelection(text: string): boolean {
   area.style.cssText = 'position: fixed; left: -9999px; top: 0; font-size: 12pt'
   document.body.append(area)
   area.select()
-  // iOS selects nothing in what is read-only unless told where.
+  // iOS selects nothing in a read-only element without a range.
   area.setSelectionRange(0, text.length)
   let copied = false
   try {

@@ -28,7 +28,7 @@ export default {
     app.component('FrameBytes', FrameBytes)
     app.component('SequencePicture', SequencePicture)
     app.component('StatePicture', StatePicture)
-    // What one page alone needs, that page alone loads. The laboratory knows the whole protocol.
+    // Only the page of the lab loads it, because the lab contains the whole protocol.
     app.component('FrameLab', defineAsyncComponent(() => import('./components/FrameLab.vue')))
     app.component('ProtocolMap', defineAsyncComponent(() => import('./components/ProtocolMap.vue')))
     app.component('AudienceFilter', defineAsyncComponent(() => import('./components/AudienceFilter.vue')))

@@ -1,4 +1,4 @@
-// The reader's language, for components that have their words in both.
+// The reader's language, for components with texts in both languages.
 
 import { computed } from 'vue'
 import { useData } from 'vitepress'

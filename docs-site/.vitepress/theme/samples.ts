@@ -1,9 +1,9 @@
-// The language that a reader has chosen for code: all tabs follow it, on this page and on those opened later.
+// The chosen language of code samples. All tabs follow it, on this page and on pages opened later.
 
-/** Where the browser keeps it. */
+/** The key in the browser's storage. */
 const KEY = 'fc-code'
 
-/** Its buttons that are not pressed. */
+/** The buttons of a language that are not pressed. */
 const WAITING = '.fc-samples > input:not(:checked)'
 
 function remembered(): string | null {
@@ -14,24 +14,24 @@ function remembered(): string | null {
   }
 }
 
-/** Presses the buttons of a language; where it has no tab, the first one stays. */
+/** Presses the buttons of a language. Rows without a tab for it keep the first one. */
 function press(language: string | null): void {
   for (const button of document.querySelectorAll<HTMLInputElement>(WAITING)) {
     if (button.value === language) button.checked = true
   }
 }
 
-/** Shows the language chosen before, on a page that has just been shown. */
+/** Shows the chosen language on a new page. */
 export const pressRemembered = () => press(remembered())
 
-/** Remembers what is chosen, and lets the other tabs follow. What was pressed stays where it is on the screen. */
+/** Stores the choice and updates the other tabs. The pressed button keeps its position on the screen. */
 export function followChoice(): void {
   document.addEventListener('change', ({ target }) => {
     if (!(target instanceof HTMLInputElement) || !target.matches('.fc-samples > input')) return
     try {
       localStorage.setItem(KEY, target.value)
     } catch {
-      // Who allows no storage chooses on each page.
+      // Without storage, the reader chooses again on each page.
     }
     const row = target.parentElement!
     const before = row.getBoundingClientRect().top
@@ -41,8 +41,8 @@ export function followChoice(): void {
 }
 
 /**
- * The same for the first page, as a script in its head: buttons are pressed while the page is read, before anything of it is
- * painted.
+ * The same for the first page, as a script in its head. It presses the buttons while the browser reads the page, before
+ * the first paint.
  */
 export const PRESS_AT_ONCE = `(()=>{let c;try{c=localStorage.getItem('${KEY}')}catch{}
 if(!c)return

@@ -1,6 +1,6 @@
-// The sidebar is longer than most screens: the item of the page that is open is scrolled into view.
+// The sidebar is longer than most screens, so the item of the open page is scrolled into view.
 
-/** Scrolls the sidebar, and nothing else, to the item of this page, unless it shows already. */
+/** Scrolls only the sidebar to the item of this page, unless the item is visible. */
 export function showActiveItem(): void {
   // The sidebar opens the group of the page first.
   requestAnimationFrame(() => {

@@ -1,14 +1,12 @@
-// Breaks the site on purpose and demands that the tests see it.
+// Breaks the site on purpose. The tests must notice each break.
 //
-// Each entry of the JSON files beside this one is a break: `find` in `file` (relative to docs-site)
-// becomes `replace`, and then the tests of `test` whose names match `pattern` must fail where they
-// passed before. `says` is a text that the failure must contain, where another break could be its
-// cause. The work happens in a copy; nothing here is touched.
+// Each entry of the JSON files in this directory is a break. It replaces `find` by `replace` in `file`, a path relative
+// to docs-site. The tests of `test` whose names match `pattern` must pass before the break and fail after it. If another
+// break could be the cause, `says` is a text that the failure must contain. All changes happen in a copy.
 //
-// Tests under tests/site need a built site, and a build takes long. So breaks that name different
-// tests share a build; `--alone` gives each its own. `--green` takes it that all tests have just
-// passed on the whole site, and does not run them there once more. A word on the command line chooses
-// the breaks whose names have it. `--check` only looks whether all breaks can be carried out.
+// Tests under tests/site need a built site, and a build takes long. Breaks with different tests share a build. `--alone`
+// gives each break its own build. `--green` assumes that all tests have just passed on the whole site. A word on the
+// command line selects the breaks whose names contain it. `--check` only checks that each break can be applied.
 
 import { spawn } from 'node:child_process'
 import { cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs'
@@ -28,7 +26,7 @@ function fits(pattern, file) {
   return [...titles].some(([, , title]) => title.includes('${') || new RegExp(pattern).test(title))
 }
 
-/** What keeps an entry from being carried out. */
+/** The reason why an entry cannot be applied. */
 function slip(entry) {
   const strange = Object.keys(entry).filter((key) => !KEYS.includes(key))
   if (strange.length > 0) return `unknown key ${strange.join(', ')}`
@@ -57,15 +55,15 @@ const breaks = all.filter(({ name }) => words.every((word) => name.includes(word
 
 const built = ({ test }) => test.startsWith('tests/site/')
 const command = ({ test, pattern }) => JSON.stringify([test, pattern ?? ''])
-/** Whether two entries run a test in common. */
+/** Returns `true` if two entries run the same test. */
 const meet = (a, b) => a.test === b.test && (a.pattern === b.pattern || a.pattern === undefined || b.pattern === undefined)
 
 const children = new Set()
 
-/** Runs a program to its end: its status and all it said. */
+/** Runs a program. Returns its status and its output. */
 const run = (program, args, cwd) =>
   new Promise((done) => {
-    // A failing test should not wait as long as a slow one may.
+    // A failing test should not wait as long as a slow one.
     const env = { ...process.env, FC_CI: '1', FC_PATIENCE: '12000', NO_COLOR: '1' }
     const child = spawn(program, args, { cwd, env, stdio: ['ignore', 'pipe', 'pipe'] })
     children.add(child)
@@ -77,7 +75,7 @@ const run = (program, args, cwd) =>
     })
   })
 
-/** Runs the tests that an entry names: how many passed and how many failed. */
+/** Runs the tests of an entry. Returns the numbers of passed and failed tests. */
 async function tested(entry, folder) {
   const pattern = entry.pattern === undefined ? [] : [`--test-name-pattern=${entry.pattern}`]
   const { said } = await run(process.execPath, ['--test', '--test-reporter=tap', ...pattern, entry.test], folder)
@@ -85,7 +83,7 @@ async function tested(entry, folder) {
   return { passed: count('pass'), failed: count('fail'), said }
 }
 
-/** As many at once as there are processors: a browser fills one. */
+/** Runs as many items at once as there are processors, because a browser uses a whole one. */
 async function each(items, work) {
   const waiting = [...items]
   const worker = async () => {
@@ -94,7 +92,7 @@ async function each(items, work) {
   await Promise.all(Array.from({ length: Math.max(1, Math.min(4, availableParallelism())) }, worker))
 }
 
-/** A docs-site and stubs of its own beside all else that the real one reads. */
+/** A copy of docs-site and stubs, with links to everything else that they read. */
 function copy() {
   const folder = mkdtempSync(path.join(tmpdir(), 'fc-breaks-'))
   const mine = path.join(folder, path.basename(site))
@@ -102,14 +100,14 @@ function copy() {
   for (const name of readdirSync(root)) {
     if (!name.startsWith('.') && !copied.includes(name) && name !== 'target') symlinkSync(path.join(root, name), path.join(folder, name))
   }
-  // A `build` of a package may be at work meanwhile.
+  // A build of a package may run at the same time.
   const left = (source) => ['node_modules', 'build'].includes(path.basename(source)) || ['dist', 'cache', '.temp'].some((name) => source === path.join(site, '.vitepress', name))
   for (const name of copied) cpSync(path.join(root, name), path.join(folder, name), { recursive: true, filter: (source) => !left(source) })
   symlinkSync(path.join(site, 'node_modules'), path.join(mine, 'node_modules'))
   return { mine, remove: () => rmSync(folder, { recursive: true, force: true }) }
 }
 
-/** Applies breaks to a copy: the way back, or `null` if one hides another. */
+/** Applies breaks to a copy. Returns the function that undoes them, or `null` if one hides another. */
 function apply(entries, mine) {
   const before = new Map()
   for (const { file, find, replace } of entries) {
@@ -146,7 +144,7 @@ const verdicts = new Map()
 const begun = Date.now()
 const seconds = () => `${Math.round((Date.now() - begun) / 1000)} s`
 
-/** What to say of a break after its tests ran. */
+/** Returns the result line of a break after its tests. */
 function judge(entry, { failed, said }) {
   if (!(failed > 0)) return 'SURVIVED: no test fails'
   if (entry.says !== undefined && !said.includes(entry.says)) return `SURVIVED: the failure does not say ${JSON.stringify(entry.says)}\n${said}`
@@ -160,7 +158,7 @@ process.on('SIGINT', () => {
   for (const child of children) child.kill()
 })
 try {
-  // Without a break the tests pass, and there are such tests.
+  // Without a break, the tests exist and pass.
   if (breaks.some(built) && !existsSync(path.join(site, '.vitepress/dist/index.html'))) throw new Error('build the site first: npm run build')
   const once = green ? [] : [...new Map(breaks.map((entry) => [command(entry), entry])).values()]
   const sick = []

@@ -1,4 +1,4 @@
-// The references of the packages, as each language's own tool makes them: every command is in them, and the guides lead there.
+// The reference of each package, written by the tool of its language, has every command. The guides link to it.
 
 import assert from 'node:assert/strict'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
@@ -12,7 +12,7 @@ import { html } from './site-pages.mjs'
 const folder = path.join(dist, 'api')
 const camel = (name) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase())
 
-/** Where each tool lists the methods of the client, how it names one, and which guide leads there. */
+/** For each tool: the page with the client's methods, the spelling of a method, and the guide with the link. */
 const REFERENCES = {
   rust: { page: 'fc_generated/struct.Client.html', method: (name) => `id="method.${name}"`, guide: 'first-call' },
   typescript: { page: 'classes/fc-protocol.Client.html', method: (name) => `id="${camel(name).toLowerCase()}"`, guide: 'first-call-typescript' },

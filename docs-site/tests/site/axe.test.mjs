@@ -1,4 +1,4 @@
-// No page of any kind has a barrier that axe knows: both languages, light and dark, a phone and a desktop.
+// axe finds no barrier on a page of each kind: in both languages, light and dark, on a phone and a desktop.
 
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
@@ -17,7 +17,7 @@ const KINDS = [
   ...['index', 'wire', 'codes', 'types', 'tables', 'results', 'changelog', 'open-questions', 'errors'].map((page) => new RegExp(`^/reference/${page}\\.html$`)),
 ]
 
-/** The laboratory with two frames, the second at fault: then it has a list, a red verdict and what it expected. */
+/** The lab with two frames, the second invalid. It then has a list, a red verdict and an expected value. */
 async function faultyCapture() {
   const { codec, hex, messageFrame, protocol, toHash } = await engine()
   const operation = protocol.operations.find(({ kind, code }) => kind === 'command' && code !== null)
@@ -27,7 +27,7 @@ async function faultyCapture() {
   return `/lab/index.html#${toHash({ ...state, paste: `${hex(frame)} ${hex(damaged)}` })}`
 }
 
-/** What VitePress itself does, and why it stays: rule, elements, reason. */
+/** Accepted barriers of VitePress: rule, elements, reason. */
 const THEIRS = [
   ['nested-interactive', '.VPSidebarItem > .item', 'the head of a group in the sidebar is a button around the button with its arrow'],
   ['landmark-one-main', 'html:has(.VPHome)', 'the home page has no main element, and its layout no slot around all of it'],

@@ -1,4 +1,4 @@
-// The built site on a free port, and Debian's Chromium before it.
+// The built site on a free port, and Debian's Chromium.
 
 import { createReadStream, existsSync, statSync } from 'node:fs'
 import http from 'node:http'
@@ -20,7 +20,7 @@ const TYPES = {
   '.svg': 'image/svg+xml', '.woff2': 'font/woff2',
 }
 
-/** Serves a built site as a plain file server does, compressed. */
+/** Serves a built site like a file server, compressed. */
 export async function serve(folder = dist, base = '/') {
   const server = http.createServer((request, response) => {
     let name = decodeURIComponent(new URL(request.url, 'http://localhost').pathname)
@@ -41,7 +41,7 @@ export async function serve(folder = dist, base = '/') {
   return { base: `http://127.0.0.1:${server.address().port}`, close: () => new Promise((done) => server.close(done)) }
 }
 
-/** A browser that talks to nobody of its own accord. */
+/** A browser without background requests. */
 export const launch = () =>
   chromium.launch({
     executablePath,
@@ -51,7 +51,7 @@ export const launch = () =>
     ],
   })
 
-/** Runs `use` with the site, or another one, a browser and a maker of pages that collect what must not happen. */
+/** Runs `use` with a site, a browser and a function that opens pages and collects their errors. */
 export async function withSite(use, other = {}) {
   const site = await serve(other.dist, other.base)
   const browser = await launch()
@@ -80,5 +80,5 @@ export async function withSite(use, other = {}) {
   }
 }
 
-/** Until Vue has taken the page over. */
+/** Waits until Vue controls the page. */
 export const alive = (page) => page.waitForFunction(() => document.querySelector('#app')?.__vue_app__ !== undefined)

@@ -1,4 +1,4 @@
-// Everything that the resolved spec holds is on the site, in both languages.
+// The site contains everything in the resolved spec, in both languages.
 
 import assert from 'node:assert/strict'
 import { execFileSync } from 'node:child_process'
@@ -16,7 +16,7 @@ function inspect() {
 
 const UNESCAPED = { amp: '&', lt: '<', gt: '>', quot: '"', '#39': "'" }
 
-/** A page as a reader sees it, white space aside. */
+/** The visible text of a page, without white space. */
 function text(file) {
   const html = readFileSync(path.join(dist, file), 'utf8')
   const main = html.slice(html.indexOf('<main'), html.indexOf('</main>'))
@@ -26,17 +26,17 @@ function text(file) {
     .replace(/[\s\u200b]+/g, '')
 }
 
-/** A sentence of the spec as it is read: without the marks of Markdown. */
+/** A sentence of the spec without Markdown syntax. */
 const read = (sentence) => sentence.replace(/[`*_\\]|\]\([^)]*\)|\[|^- /gm, '').replace(/\s+/g, '')
 const bare = (words) => words.replace(/[`*_[\]]/g, '')
 
-/** What stands in code spans, whole. */
+/** The content of each code span. */
 function codes(html) {
   const spans = html.matchAll(/<code\b[^>]*>([\s\S]*?)<\/code>/g)
   return Array.from(spans, ([, span]) => span.replace(/<[^>]*>/g, '').replace(/&(amp|lt|gt|quot|#39);/g, (_, name) => UNESCAPED[name]))
 }
 
-/** The rows of the tables of fields by their anchors: the key of each, and how deep it lies. */
+/** The rows of field tables by anchor: the key and the depth of each. */
 function rows(html) {
   const rows = new Map()
   for (const [, id, depth, key] of html.matchAll(/<tr id="([^"]+)" style="--depth:\s*(\d+);?">\s*<td\b[^>]*>([\s\S]*?)<\/td>/g)) {
@@ -61,12 +61,12 @@ test('the site has every operation, field, enum value, result code and question'
       }
       return cache.get(name)
     }
-    /** A sentence or a number, somewhere in the text. */
+    /** A sentence or a number anywhere in the text. */
     const want = (name, what, kind) => {
       counts[kind]++
       if (!page(name).text.includes(bare(read(String(what))))) missing.push(`${language} ${name}: ${what}`)
     }
-    /** A name, by itself in a code span. */
+    /** A name that fills a code span. */
     const named = (name, what, kind) => {
       counts[kind]++
       if (!page(name).codes.has(what)) missing.push(`${language} ${name}: \`${what}\``)
@@ -82,10 +82,10 @@ test('the site has every operation, field, enum value, result code and question'
       }
       for (const [side, body] of [['request', operation.request], ['response', operation.response]]) {
         for (const field of body?.fields ?? []) {
-          // A path that ends in `[]` is the item of an array: its own line is that of its type.
+          // A path that ends in `[]` is the item of an array. Its row is that of its type.
           if (field.path.endsWith('[]')) continue
           const keys = field.path.replaceAll('[]', '').split('.')
-          // A form of a one-of stands between a key and what lies in it.
+          // The form of a one-of is between a key and its fields.
           const found = [...page(name).rows].find(([id, row]) => {
             const steps = id.split('-')
             const rest = steps.slice(1).filter((step) => keys.includes(step))

@@ -1,6 +1,6 @@
-// What a reader cannot read: text that leaves the page or its box, or lies over other text.
+// Finds unreadable text: outside of the page or its box, or over other text.
 
-/** How readers look at a page; paper is as wide as an A4 page between the margins that browsers leave. */
+/** The views of a page. Paper is as wide as an A4 page without the margins of browsers. */
 export const VIEWS = [
   { name: '390 px', width: 390, height: 844, media: 'screen' },
   { name: '820 px', width: 820, height: 1180, media: 'screen' },
@@ -15,8 +15,8 @@ export async function look(page, { width, height, media }) {
 }
 
 /**
- * `{ counts, cut }` of the page as it is shown: how many tables, samples, pictures and badges there
- * are, and each of them of which something cannot be read. Samples of code may scroll on a screen.
+ * `{ counts, cut }` of the shown page: the numbers of tables, samples, pictures and badges, and each one with an
+ * unreadable part. Code samples may scroll on a screen.
  */
 export const cut = (page, { media }) => page.evaluate(find, media === 'print')
 
@@ -47,7 +47,7 @@ function find(print) {
     if (!seen.has(place)) seen.set(place, `${kind?.[0] ?? place.tagName.toLowerCase() + (place.className?.baseVal ?? place.className ? '.' + place.className : '')}: ${why}: ${text.trim().slice(0, 40)}`)
   }
 
-  /** Whether a rectangle can be seen whole from its element up to the page. */
+  /** Returns `true` if no element between a rectangle and the page cuts it off. */
   const examine = (element, rect, text) => {
     if (rect.right > wide + 1 || rect.left < -1) {
       found(element, 'off the page', text)
@@ -78,7 +78,7 @@ function find(print) {
     if (!/[^\s\u200b]/.test(node.data)) continue
     const element = node.parentElement
     if (element.closest('textarea, select, style, script, title, .visually-hidden')) continue
-    // What scrolls is not cut; only its frame must be whole.
+    // The content of a scrolling element counts as visible. Only its box must be whole.
     if (!print && element.closest('div[class*="language-"] pre')) continue
     if (!element.checkVisibility({ opacityProperty: true, visibilityProperty: true })) continue
     range.selectNodeContents(node)
@@ -99,7 +99,7 @@ function find(print) {
     if (a.left < b.left || a.right > b.right || a.top < b.top || a.bottom > b.bottom) found(shape, 'outside of its box', shape.textContent)
   }
 
-  // Text over text: more than the slack between two lines.
+  // Text over text, by more than the slack between two lines.
   texts.sort((a, b) => a.rect.top - b.rect.top)
   texts.forEach((one, index) => {
     for (let next = index + 1; next < texts.length && texts[next].rect.top < one.rect.bottom; next++) {

@@ -1,4 +1,4 @@
-// The laboratory in the page, against every golden vector.
+// The frame lab in the page, with every golden frame.
 
 import assert from 'node:assert/strict'
 import { createHash, randomBytes } from 'node:crypto'
@@ -50,7 +50,7 @@ const numberIn = (hex, role) => {
   const { offset, size } = field(role)
   return lab.readUint(Uint8Array.from(bytesOf(hex)).subarray(offset, offset + size), protocol.byteOrder)
 }
-/** The frame with its last byte changed, which its digest then does not fit. */
+/** The frame with its last byte changed, so that its digest is wrong. */
 const spoiled = (hex) => hex.replace(/..$/, (byte) => (byte === '7D' ? '7C' : '7D'))
 
 test('accepted frames are decoded, rejected ones refused by name', driven, async () => {
@@ -66,7 +66,7 @@ test('accepted frames are decoded, rejected ones refused by name', driven, async
     let accepted = 0
     cases.forEach((vector, index) => {
       const verdict = verdicts[index]
-      // Vectors of no operation are about the frame; an empty data area has no result code.
+      // Golden frames without an operation test the frame. An empty data area has no result code.
       const fault = vector.alone && vector.error === '' ? verdict.frameFault : verdict.fault
       if (fault !== vector.error) wrong.push(`${vector.where}: ${fault} instead of ${vector.error || 'none'}`)
       if (vector.error !== '') return
@@ -165,7 +165,7 @@ test('a byte lights its field and a field its bytes', driven, async () => {
   })
 })
 
-/** Opens the laboratory in one language, and in the other. */
+/** Opens the lab in both languages. */
 const inBoth = async (open, use, options) => {
   for (const [url, english] of [['/lab/index.html', false], ['/en/lab/index.html', true]]) {
     const page = await open(url, options)
@@ -184,7 +184,7 @@ test('the id of the box is the id of the frame', driven, async () => {
       await page.locator('[data-field=id]').fill(String(id))
       assert.equal(numberIn(await page.locator('[data-out=frame]').textContent(), 'id'), id)
     }
-    // No frame is made with another id than the one that stands there.
+    // The frame has exactly the id in the box.
     await page.locator('[data-field=id]').fill(String(2 ** 32))
     await page.locator('[data-out=bad-id]').waitFor()
     assert.equal(await page.locator('[data-out=frame]').count(), 0)
@@ -251,7 +251,7 @@ const { struct: envelope, code: role } = protocol.envelope.response
 /** The key of the result code. */
 const RESULT = envelope.fields[role].key
 
-/** A response whose result code is no number. */
+/** A response whose result code is not a number. */
 function faulty() {
   const json = JSON.stringify({ ...JSON.parse(command.responseExample), [RESULT]: 'x' })
   return { json, hex: lab.hex(lab.messageFrame(codec, command, { side: 'response', id: 1, gzip: false }, json)) }
@@ -302,7 +302,7 @@ test('a capture is good only if every frame is', driven, async () => {
       assert.equal(skipped, 'bad')
       assert.match(where, english ? /2 bytes at 0x0000 belong to no frame/ : /0x0000 起的 2 字节不属于任何一帧/)
       assert.equal((await verdict(`${request} ${spoiled(response)}`))[0], 'bad')
-      // What is wrong is what one sees first.
+      // The reader sees the error first.
       assert.equal(await page.locator('[data-out=fault]').getAttribute('data-fault'), 'bad_digest')
     })
     assert.deepEqual(faults, [])
@@ -341,7 +341,7 @@ test('a long capture lists its first frames and the open one', driven, async () 
     assert.ok((await pieces.count()) < 300)
     await all.click()
     assert.equal(await pieces.count(), 300)
-    // Another capture begins with its first frames.
+    // A new capture shows its first frames.
     await paste(page, many + frame)
     await all.waitFor()
   })
@@ -384,7 +384,7 @@ test('without scripts the page asks for them', driven, async () => {
       await live.locator('[data-out=overall]').waitFor()
       assert.equal(await live.locator('.fc-unscripted').isVisible(), false)
     }
-    // A frame of another page offers nothing that needs scripts.
+    // A frame on another page offers nothing that needs scripts.
     const page = await open('/en/reference/commands/get_cell_config.html', { javaScriptEnabled: false })
     assert.equal(await page.locator('.fc-frame button:visible, [data-do=open-in-lab]:visible').count(), 0)
     const bytes = await page.locator('.fc-frame').last().evaluate((frame) => [
@@ -424,7 +424,7 @@ test('a file is opened, dropped or pasted', driven, async () => {
         await overall.getByText(words).waitFor()
       }
     }
-    // What it refuses it names, until another text is pasted.
+    // The lab names a refused file until the next paste.
     const empty = Buffer.from('d4c3b2a1020004000000000000000000ffff000001000000', 'hex')
     await page.locator('[data-field=file]').setInputFiles({ name: 'a.pcap', mimeType: 'application/octet-stream', buffer: empty })
     await page.locator('[data-out=refused]').getByText('0 packets').waitFor()
@@ -467,7 +467,7 @@ test('a frame is copied without a clipboard API', driven, async () => {
     await box.focus()
     await page.keyboard.press('Control+V')
     assert.equal(await box.inputValue(), frame, 'what is pasted is the frame')
-    // Where even that is refused, the text stands there, selected.
+    // If that is refused too, the selected text is shown.
     await page.evaluate(() => (document.execCommand = () => false))
     await button.click()
     await page.getByText('press Ctrl+C').waitFor()
@@ -539,7 +539,7 @@ test('pasted input moves to the other language', driven, async () => {
     assert.match(await english.evaluate((link) => link.closest('a').href), /#lab=/, 'the link to the other language carries it')
     await english.click()
     await page.waitForURL((url) => url.pathname.startsWith('/en/'))
-    // The address changes before the page does: its language says which one it is.
+    // The address changes before the page, so the language shows which page it is.
     await page.locator('[data-out=overall]').getByText('1 frame, valid').waitFor()
     assert.equal(await page.locator('[data-field=hex]').inputValue(), text)
   })

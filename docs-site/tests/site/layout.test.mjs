@@ -1,4 +1,4 @@
-// Nothing that a page shows is cut off or lies over something else: on a phone, a tablet, a desktop and paper.
+// Pages have no part that is cut off or covers another one: on a phone, a tablet, a desktop and paper.
 
 import assert from 'node:assert/strict'
 import { after, before, describe, test } from 'node:test'

@@ -1,4 +1,4 @@
-// Every link of the built site leads to a page, and to a place on it that exists.
+// Every link of the built site leads to an existing page and anchor.
 
 import assert from 'node:assert/strict'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
@@ -21,7 +21,7 @@ test('links and anchors resolve, and no file is from another host', built, () =>
     ids.set(file, new Set(Array.from(text.matchAll(/ id="([^"]*)"/g), ([, id]) => decode(id))))
   }
   const all = new Set(files)
-  // That the references of the packages are there is for the test of them to say.
+  // Another test covers the references of the packages.
   const referenced = files.some(isOfTools)
   const dead = []
   let links = 0
@@ -37,7 +37,7 @@ test('links and anchors resolve, and no file is from another host', built, () =>
       if (target.endsWith('/')) target += 'index.html'
       if (isOfTools(target) && !referenced) continue
       if (!all.has(target)) dead.push(`${file}: ${raw} leads nowhere`)
-      // The bytes of a frame, which the laboratory opens, are no place on its page.
+      // The lab opens the bytes of a frame; they are not an anchor.
       else if (name === 'href' && url.hash && !/\/lab\/index\.html#hex=/.test(raw) && ids.has(target) && !ids.get(target).has(decodeURIComponent(url.hash.slice(1)))) {
         dead.push(`${file}: ${raw} has no such anchor`)
       }

@@ -1,4 +1,5 @@
-// Every page: no error, no request off the host, whole without scripts, light enough; and the ways between them.
+// Every page has no errors, sends no request to another host, is complete without scripts and small enough. Navigation
+// between pages works.
 
 import assert from 'node:assert/strict'
 import { existsSync, readFileSync, readdirSync } from 'node:fs'
@@ -207,12 +208,12 @@ test('each page loads less than 300 kB compressed', driven, async () => {
       const page = await context.newPage()
       const sizes = []
       page.on('requestfinished', (request) => {
-        // What Chromium fetches ahead for the next page is not part of this one.
+        // Files that Chromium prefetches for the next page do not count.
         if (request.headers()['sec-purpose'] === 'prefetch') return
         sizes.push(request.sizes().then(({ responseBodySize }) => responseBodySize))
       })
       await page.goto(base + url, { waitUntil: 'networkidle' })
-      // What ends only now, with the page that is being closed, has no size any more.
+      // Requests that end with the closed page have no size.
       page.removeAllListeners('requestfinished')
       const total = (await Promise.all(sizes)).reduce((sum, size) => sum + size, 0)
       console.log(`# ${url}: ${Math.round(total / 1000)} kB`)

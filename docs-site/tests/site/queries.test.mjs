@@ -1,4 +1,4 @@
-// What people type is found: the words of `queries.json` in the index of the built site.
+// The index of the built site finds the queries of `queries.json`.
 
 import assert from 'node:assert/strict'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
@@ -10,7 +10,7 @@ const queries = JSON.parse(readFileSync(new URL('queries.json', import.meta.url)
 const chunks = path.join(dist, 'assets/chunks')
 const built = needs(existsSync(chunks), 'needs the built site (npm run build)')
 
-/** A search as the site makes it: VitePress' own index, read with our options. */
+/** A search like that of the site: VitePress' index with the site's options. */
 async function searcher(locale) {
   const { MiniSearch, miniSearch } = await load(`
     export { default as MiniSearch } from 'minisearch'
@@ -62,7 +62,7 @@ test('a free code is found', built, async () => {
     assert.match(search('0x0A0E')[0].title, free)
     assert.match(search('0x0303')[0].title, closed)
     assert.match(search('0x1234')[0].title, locale === 'en' ? /do not use it/ : /不要分配/)
-    // No hit shows the names that only help to find it.
+    // Hits do not show the names that only serve the search.
     assert.doesNotMatch(search('GetRobotSnRequest')[0].title, /\u2063|GetRobotSnRequest/)
   }
 })
@@ -88,7 +88,7 @@ test('words that only ask change nothing', built, async () => {
     const ids = (query) => search(query).map(({ id }) => id)
     assert.deepEqual(ids(asked), ids(plain), asked)
   }
-  // A query of nothing else is still one.
+  // A query of only such words still works.
   assert.notEqual((await searcher('en'))('the').length, 0)
 })
 

@@ -1,5 +1,5 @@
-// Pages as they are read: fields nest and can be linked to, a phone shows blocks, paper shows all there
-// is and no more, and nothing of the protocol is missing from the ways to it.
+// Readers' needs: fields nest and have links, a phone shows blocks, paper shows all content and no controls, and every
+// operation is reachable.
 
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
@@ -61,7 +61,7 @@ test('the link of a field works with and without scripts', driven, async () => {
         await opened.goto(`${base}${url}#${id}`, { waitUntil: 'load' })
         if (javaScriptEnabled) await alive(opened)
         await opened.waitForFunction(() => scrollY > 0)
-        // Nothing that stays at the top of the screen lies over it.
+        // Fixed elements at the top of the screen do not cover it.
         await opened.waitForFunction((id) => {
           const { left, top, height } = document.getElementById(id).querySelector('code').getBoundingClientRect()
           const seen = document.elementFromPoint(left + 4, top + height / 2)
@@ -139,7 +139,7 @@ test('whole frames open in the lab', driven, async () => {
   }
   assert.ok(framed.length > 50)
   assert.deepEqual(wrong, [])
-  // Nor is one cut in the Markdown, where the site does not draw it.
+  // The Markdown shows all of it as well.
   assert.deepEqual(pages().filter((url) => /\d+ bytes left out|略去 \d+ 字节/.test(html(url))), [])
   await withSite(async ({ open, faults }) => {
     for (const url of ['/reference/commands/get_cell_config.html', '/en/index.html']) {
@@ -155,7 +155,7 @@ test('whole frames open in the lab', driven, async () => {
   })
 })
 
-/** Where the site is served. */
+/** The base of the site. */
 async function siteOf(open) {
   const page = await open('/')
   return page.url()

@@ -1,4 +1,5 @@
-// Samples in several languages: every operation has them, one choice holds for all pages, and without scripts none is out of reach.
+// Samples in several languages: every operation has them, one choice applies to all pages, and all are reachable without
+// scripts.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
@@ -15,7 +16,7 @@ const REPORT = /\/reference\/reports\//
 /** The languages of each row of tabs of a page. */
 const rows = (url) => Array.from(html(url).matchAll(/<div class="fc-samples"[^>]*>(.*)/g), ([, row]) => Array.from(row.matchAll(/<label[^>]*>([^<]+)</g), ([, name]) => name))
 
-/** The language that each row of tabs shows, by the class of its code; and what its buttons say. */
+/** The language that each row of tabs shows, by the class of its code, and the state of its buttons. */
 const shown = (page) =>
   page.locator('.fc-samples').evaluateAll((all) =>
     all.map((row) => {
@@ -51,13 +52,13 @@ test('without scripts each language can be looked at', driven, async () => {
 
 test('a language chosen by keyboard applies to all code without scrolling', driven, async () => {
   await withSite(async ({ open, faults }) => {
-    // Where the code above is longer in one language than in the other.
+    // The code above is longer in one language than in the other.
     const difference = (html) => {
       const above = html.split('class="fc-samples"')[1] ?? ''
       const lines = (language) => above.split(`class="language-${language} `)[1]?.split('</pre>')[0].split('class="line"').length ?? 0
       return Math.abs(lines('rust') - lines('python'))
     }
-    // Some browsers keep what is seen where it is by themselves, others do not.
+    // Some browsers keep the scroll position automatically, others do not.
     for (const anchor of ['auto', 'none']) {
       const page = await open(pageWithMost(difference, 'zh'))
       await alive(page)
@@ -99,7 +100,7 @@ test('the choice applies to other pages and later visits', driven, async () => {
     await alive(page)
     assert.deepEqual(await shown(page), PYTHON, 'not in the other language')
 
-    // What has been chosen is there before the scripts of the site are.
+    // The chosen language shows before the site's scripts run.
     const context = await browser.newContext({ storageState: await page.context().storageState() })
     await context.route('**/*.js', (route) => route.abort())
     const bare = await context.newPage()

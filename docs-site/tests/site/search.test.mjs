@@ -1,4 +1,4 @@
-// The search box in the page. What is found by which words is in `queries.json`.
+// The search box in the page. `queries.json` has the queries and their hits.
 
 import assert from 'node:assert/strict'
 import { test } from 'node:test'

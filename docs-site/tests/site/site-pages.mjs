@@ -4,10 +4,10 @@ import { readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { dist } from '../support.mjs'
 
-/** Whether other tools have made a page: the reference of a package. */
+/** Returns `true` for a page of another tool: the reference of a package. */
 export const isOfTools = (url) => url.startsWith('/api/')
 
-/** Paths of all pages but those of other tools. */
+/** Paths of all pages except those of other tools. */
 export const pages = () =>
   readdirSync(dist, { recursive: true, encoding: 'utf8' })
     .map((file) => '/' + file.split(path.sep).join('/'))
@@ -16,7 +16,7 @@ export const pages = () =>
 /** The HTML of a page. */
 export const html = (url) => readFileSync(path.join(dist, url), 'utf8')
 
-/** The page of a language that has most of something. */
+/** The page of a language with the largest count. */
 export function pageWithMost(count, language) {
   const mine = pages().filter((url) => url.startsWith('/en/') === (language === 'en'))
   return mine.map((url) => [count(html(url)), url]).sort(([a], [b]) => b - a)[0][1]

@@ -1,4 +1,4 @@
-// A small site, built with the site's own settings below a base: some of its pages, and those of a spec with hostile texts.
+// A small site with the settings of the real one, below a base: some real pages, and pages of a spec with hostile texts.
 
 import assert from 'node:assert/strict'
 import { execFileSync } from 'node:child_process'
@@ -24,7 +24,7 @@ const HOSTILE = [
   'a | b ] [ {0}',
   'ends in \\',
 ].join(' ')
-/** Characters that do not show. Reading a spec may refuse them. */
+/** Invisible characters. The loader may refuse them. */
 const INVISIBLE = '\u202e\u0000\u001b[31m\u2028'
 
 const fcproto = (args, options) => {
@@ -32,12 +32,12 @@ const fcproto = (args, options) => {
   return execFileSync('cargo', command, { cwd: root, encoding: 'utf8', maxBuffer: 1 << 28, stdio: ['pipe', 'pipe', 'pipe'], ...options })
 }
 
-/** A dump with a text behind each of its texts. */
+/** A dump with a text appended to each of its texts. */
 const spoiled = (value, text) =>
   JSON.parse(JSON.stringify(value, (key, value) => ((key === 'zh' || key === 'en') && typeof value === 'string' ? `${value} ${text}` : value)))
 
 describe('a small site', driven, () => {
-  // Below the site, so that its modules are found.
+  // Inside the site's directory, so that its modules are found.
   const cache = path.join(site, '.vitepress/cache')
   let folder
   let dist
@@ -95,7 +95,7 @@ export default { ...site, ignoreDeadLinks: true }
         const { host, pathname } = new URL(raw.replaceAll('&amp;', '&'), `http://site${BASE}${file}`)
         if (host !== 'site') continue
         if (!pathname.startsWith(BASE)) wrong.push(`${file}: ${raw}`)
-        // Other pages, and the references of the packages, are not part of this site.
+        // Other pages and the references of the packages are not part of this site.
         else if (!/\.html$|\/$|\/api\//.test(pathname) && !all.has(pathname)) wrong.push(`${file}: there is no ${raw}`)
       }
     }
