@@ -1,6 +1,7 @@
-//! Runs a target on very many inputs that are changes of its corpus: random, from a seed, and without the
-//! instrumentation that makes a fuzzer find its way and costs most of its time. What a fuzzer has found stands in
-//! the corpus; this says how far it holds.
+//! Runs a target on many random changes of its corpus.
+//!
+//! It has no coverage instrumentation, which takes most of the time of a fuzzer. The fuzzer finds new paths and keeps
+//! them in the corpus. This program then tries many more inputs near them. A seed makes a run repeatable.
 //!
 //! ```text
 //! cargo run --release --example many -- memory 100000000 [SEED]
@@ -11,13 +12,13 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// For the target that looks at it.
+/// The target `memory` reads its counts.
 #[global_allocator]
 static ALLOCATOR: peak_alloc::PeakAlloc = fc_fuzz::COUNTING;
 
 /// Longest input, in bytes.
 const LONGEST: usize = 1024;
-/// Between two lines that say how far it is.
+/// Time between two lines of progress.
 const PROGRESS: Duration = Duration::from_secs(10);
 
 fn main() -> ExitCode {
@@ -59,7 +60,7 @@ fn usage() -> ExitCode {
     ExitCode::from(2)
 }
 
-/// The inputs in the target's corpus, in an order of their own.
+/// Returns the inputs in the corpus of a target, sorted by file name, without those above [`LONGEST`].
 fn corpus(name: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("corpus")
@@ -71,7 +72,7 @@ fn corpus(name: &str) -> Vec<Vec<u8>> {
     inputs.filter(|input| input.len() <= LONGEST).collect()
 }
 
-/// Marsaglia's xorshift64, and what is done with it.
+/// A random number generator, Marsaglia's xorshift64.
 struct Random(u64);
 
 impl Random {
@@ -82,7 +83,7 @@ impl Random {
         usize::try_from(self.0 >> 33).unwrap_or(0) % bound.max(1)
     }
 
-    /// Makes an input of one of the corpus, or of two, with up to eight changes.
+    /// Makes an input from one or two inputs of the corpus, with up to eight changes.
     fn change(&mut self, corpus: &[Vec<u8>], input: &mut Vec<u8>) {
         input.clear();
         input.extend_from_slice(&corpus[self.below(corpus.len())]);
@@ -110,7 +111,7 @@ impl Random {
         input.truncate(LONGEST);
     }
 
-    /// Any byte, or one of those that mean something in JSON.
+    /// Returns an arbitrary byte, or in half of all cases one that is common in JSON.
     fn byte(&mut self) -> u8 {
         const JSON: &[u8] = br#"{}[]",:\0123456789eE+-.truefalsn "#;
         match self.below(2) {

@@ -1,5 +1,6 @@
-//! Writes the corpora a run starts with: the golden frames, the examples of all messages and the
-//! spec. `cargo run --release --example seed`
+//! Writes the first inputs of every corpus: golden frames, examples of all messages, and specs.
+//!
+//! Run it with `cargo run --release --example seed`.
 
 use fc_fuzz::{MESSAGES, SEPARATOR};
 use serde_json::Value;
@@ -51,7 +52,7 @@ fn main() -> io::Result<()> {
     Ok(())
 }
 
-/// Members that make much of little when they come again and again.
+/// Short JSON members that take much memory if they are repeated.
 const REPEATED: [&str; 4] = [r#""a":[],"#, r#""":0,"#, r#""data":{},"#, r#""\n":"\n","#];
 
 struct Seeds<'a> {
@@ -88,7 +89,8 @@ impl Seeds<'_> {
     }
 
     fn session(&mut self) -> io::Result<()> {
-        // Open, answer, wait, report, repeat, lose; once over the end of the ids.
+        // Opens two requests, answers one, waits, receives a report twice, loses requests, cancels one, and receives an
+        // arbitrary frame. Two of the three heads start at the end of the ids.
         let steps: &[u8] = &[
             0, 0, 50, 2, 1, 0, 1, 1, 50, 2, 1, 0, 2, 0, 0, 4, 60, 5, 1, 0, 3, 0, 5, 1, 0, 3, 0, 6,
             1, 3, 1, 0, 7, 1, 1, 1, 0, 0, 0, 0, 0,
@@ -127,7 +129,7 @@ impl Seeds<'_> {
     }
 }
 
-/// All YAML files below `folder` as one input.
+/// Appends all YAML files below `folder` to one input.
 fn gather(folder: &Path, name: &str, text: &mut String) -> io::Result<()> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Ok(());

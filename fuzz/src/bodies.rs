@@ -1,4 +1,4 @@
-//! The JSON readers of every generated message beside `serde_json`.
+//! Compares the JSON reader of every generated message with `serde_json`.
 //!
 //! Input: two bytes that choose the message, then the text of a body.
 
@@ -14,27 +14,27 @@ use std::fmt;
 type Transcode = fn(&[u8]) -> Result<Vec<u8>, BodyError>;
 type Enveloped = fn(&[u8], Allowance) -> Result<bool, BodyError>;
 
-/// One message: its name, and how its bodies are read and written.
+/// One message of the spec, with the functions that read and write its bodies.
 pub struct Row {
-    /// Name in Rust.
+    /// Name of the type in Rust.
     pub name: &'static str,
-    /// The spec's example.
+    /// Example body from the spec.
     pub example: &'static str,
     transcode: Transcode,
     enveloped: Enveloped,
 }
 
 impl Row {
-    /// Whether the body beside an envelope can be read within an allowance.
+    /// Reads an envelope and the body in it. Returns `true` if the body is valid.
     ///
     /// # Errors
-    /// What keeps the envelope from being read.
+    /// If the envelope is invalid.
     pub fn enveloped(&self, text: &[u8], allowance: Allowance) -> Result<bool, BodyError> {
         (self.enveloped)(text, allowance)
     }
 }
 
-/// Whether the body beside an envelope could be read.
+/// Reads an envelope and the body in it. Returns `true` if the body is valid.
 fn enveloped<M: Message>(text: &[u8], allowance: Allowance) -> Result<bool, BodyError> {
     read_enveloped::<fc_generated::RequestEnvelope, M>(text, allowance)
         .map(|read| read.body.is_ok())
@@ -54,14 +54,16 @@ macro_rules! rows {
 
 for_each_message!(rows);
 
-/// A text is refused as no JSON exactly where `serde_json` refuses its grammar; what is read is
-/// written as JSON, and that is read and written the same again.
+/// Checks that the reader and `serde_json` agree on which texts are JSON.
+///
+/// A body that the reader accepts is written as JSON. Reading and writing that JSON once more must not change it.
 pub fn bodies(data: &[u8]) {
     let mut input = Input::new(data);
     let row = &MESSAGES[usize::from(input.u16()) % MESSAGES.len()];
     let text = input.rest();
     let sent: &[u8] = if text.is_empty() { b"{}" } else { text };
-    // Without looking into it: numbers past f64 and lone surrogates are JSON, and kept unless read.
+    // `RawValue` checks only the grammar. Numbers outside the range of f64 and lone surrogates are valid JSON. The
+    // reader keeps them as text if no field uses them.
     let grammar = serde_json::from_slice::<&RawValue>(sent);
     let _ = row.enveloped(text, Allowance::DEFAULT);
     match (row.transcode)(text) {
@@ -77,9 +79,9 @@ pub fn bodies(data: &[u8]) {
                 BodyErrorKind::BadJson | BodyErrorKind::NotUtf8 => {
                     assert!(grammar.is_err(), "{}: {error} of a JSON text", row.name);
                 }
-                // What comes behind that depth is not looked at.
+                // The reader stops at the limit, so the rest of the text may be invalid.
                 BodyErrorKind::TooDeep => {}
-                // serde_json reads strings wherever they are, and refuses what is none.
+                // `Value` reads every string, so it must find the lone surrogate too.
                 BodyErrorKind::LoneSurrogate => {
                     let value = serde_json::from_slice::<Value>(sent);
                     assert!(grammar.is_ok() && value.is_err(), "{}: {error}", row.name);
@@ -90,8 +92,9 @@ pub fn bodies(data: &[u8]) {
     }
 }
 
-/// A key that came several times goes out as often, or not at all where unknown keys are skipped:
-/// never is one of several values chosen.
+/// Checks that no repeated key loses some of its values.
+///
+/// A repeated key is written as often as it was read, or not at all where unknown keys are skipped.
 fn none_collapsed(name: &str, sent: &[u8], written: &[u8]) {
     let (sent, written) = (Members::of(sent), Members::of(written));
     for (key, count) in &sent.0 {
@@ -103,7 +106,7 @@ fn none_collapsed(name: &str, sent: &[u8], written: &[u8]) {
     }
 }
 
-/// How often each key of an object stands in it.
+/// The keys of an object, each with its number of occurrences.
 struct Members(HashMap<String, usize>);
 
 impl Members {

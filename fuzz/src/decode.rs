@@ -1,13 +1,13 @@
-//! What a tool does with a capture: bytes, frames, bodies by their operation, and back.
+//! Decodes a capture as a tool does: frames, then their bodies by operation, and back to frames.
 //!
-//! Input: flags, then the capture.
+//! Input: a byte of flags, then the capture.
 
 use crate::input::Input;
 use fc_generated::Fc;
 use fc_generated::descriptors::OPERATIONS;
 use fc_runtime::{BodyInfo, Decoder, Encoder, FrameId, Gzip, OperationKind, Protocol};
 
-/// A body that is read is written the same again, and travels through a frame unharmed.
+/// Checks that a written body reads and writes the same again, and passes unchanged through a compressed frame.
 pub fn decode(data: &[u8]) {
     let mut input = Input::new(data);
     let flags = input.byte();

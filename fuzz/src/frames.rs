@@ -1,7 +1,7 @@
-//! The frame decoder, fed in arbitrary pieces and as a whole.
+//! Feeds a stream to the frame decoder as a whole and in arbitrary pieces.
 //!
-//! Input: flags, number of piece lengths, piece lengths, the stream. Where the flags say so, the
-//! digests of frames that lie where they should are put right first: a fuzzer does not guess MD5.
+//! Input: a byte of flags, the number of piece lengths, the piece lengths, the stream. A flag corrects the digests of
+//! all frames first, because a fuzzer cannot guess an MD5.
 
 use crate::input::Input;
 use fc_generated::Fc;
@@ -13,13 +13,15 @@ const LIMITS: Limits = Limits {
     inflated_bytes: 32 * 1024,
     ..Fc::DEFAULTS.limits
 };
-/// What a decoder may keep beyond what it has been given, in bytes.
+/// Memory that a decoder may keep in addition to a multiple of the received bytes, in bytes.
 const SLACK: usize = 256 * 1024;
 
 type Found = Vec<Result<(FrameId, Vec<u8>), FrameError>>;
 
-/// Whatever the split, the same frames and errors come out; memory is bounded by what came in; a
-/// frame that came out goes in again.
+/// Checks that the split does not change the frames and errors.
+///
+/// The memory of the decoder is limited by the number of received bytes. Every decoded frame can be encoded and decoded
+/// again.
 pub fn frames(data: &[u8]) {
     let mut input = Input::new(data);
     let flags = input.byte();
@@ -95,7 +97,7 @@ fn drain(decoder: &mut Decoder<Fc>, found: &mut Found) {
             Ok(Some(frame)) => found.push(Ok((frame.id(), frame.body().to_vec()))),
             Err(error) => {
                 let fatal = error.is_fatal();
-                // A fatal error comes again with every call.
+                // Every further call returns a fatal error again.
                 if found.last() != Some(&Err(error)) || !fatal {
                     found.push(Err(error));
                 }
@@ -107,7 +109,7 @@ fn drain(decoder: &mut Decoder<Fc>, found: &mut Found) {
     }
 }
 
-/// Puts the digests of the frames in `stream` right, as far as they lie one behind the other.
+/// Corrects the digests of the frames in `stream`, up to the first impossible length.
 fn seal(stream: &mut [u8]) {
     const LEN: usize = <Fc as Protocol>::Header::LEN;
     let mut rest = stream;

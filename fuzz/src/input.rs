@@ -1,6 +1,6 @@
-//! Decisions read from a fuzzer's bytes.
+//! Reads the input of a fuzzer as a sequence of decisions.
 
-/// Bytes to take decisions from; zeros once they are used up.
+/// The unread bytes of an input. After the end, every number is 0.
 pub struct Input<'a>(&'a [u8]);
 
 impl<'a> Input<'a> {

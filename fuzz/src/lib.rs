@@ -1,5 +1,7 @@
-//! Fuzz targets of the FC tools. Each is a function from bytes to nothing that panics where a
-//! promise is broken, so that libFuzzer, the fixtures and a debugger run the very same code.
+//! Fuzz targets of the FC tools.
+//!
+//! Each target is a function that takes bytes and panics if a promise is broken. libFuzzer, the fixtures and a debugger
+//! all run the same function.
 
 mod bodies;
 mod decode;
@@ -18,13 +20,13 @@ pub use session::session;
 #[cfg(feature = "spec")]
 pub use spec::spec;
 
-/// What opens the line that names the next file of a spec.
+/// Start of a line that names the next file of a spec.
 pub const SEPARATOR: &str = "=== ";
 
-/// A target: its name, which is also that of its corpus, and its function.
+/// The name of a target, which is also the name of its corpus, and its function.
 pub type Target = (&'static str, fn(&[u8]));
 
-/// Every target.
+/// All targets.
 pub const TARGETS: &[Target] = &[
     ("frames", frames),
     ("session", session),

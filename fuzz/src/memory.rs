@@ -1,7 +1,7 @@
-//! What a frame costs in memory, as an allocator counts it.
+//! Measures the memory for receiving one frame, with a counting allocator.
 //!
-//! Input: two bytes that choose the message, two that say how often a piece is repeated, the lengths
-//! of what is in front of it and of itself, then the three parts of a body.
+//! Input: two bytes choose the message. The next two are the number of repetitions of the middle part. One byte each is
+//! the length of the first part and of the middle part. The three parts of the body follow.
 
 use crate::bodies::MESSAGES;
 use crate::input::Input;
@@ -9,25 +9,25 @@ use fc_generated::Fc;
 use fc_runtime::{Allowance, Decoder, Encoder, FrameId, Gzip, Protocol};
 use peak_alloc::PeakAlloc;
 
-/// What a binary that means to count makes its global allocator. Elsewhere it sees nothing.
+/// The counting allocator. It counts only in a binary that makes it the global allocator.
 pub const COUNTING: PeakAlloc = PeakAlloc;
 
-/// Bytes of memory for each byte that was received or inflated.
+/// Allowed memory for each received or inflated byte, in bytes.
 const FACTOR: usize = 4;
 
-/// What lists may take is a limit of its own: small here, so that it hides nothing.
+/// The memory of lists has a separate limit. It is small here, so that it does not hide other memory.
 const ALLOWANCE: Allowance = Allowance {
     list_bytes: 1024,
     ..Allowance::DEFAULT
 };
 
-/// A way for a body to come.
+/// Encoding and limits of a body.
 struct Way {
-    /// Longest body, in bytes: short enough for many, and long enough to stand out beside the constant.
+    /// Longest body, in bytes. It allows many runs, but is long compared with `constant`.
     longest: usize,
     gzip: Option<Gzip>,
-    /// What does not depend on the body, in bytes: the lists with what moves while they grow, the state of the
-    /// decompressor.
+    /// Allowed memory that does not depend on the length of the body, in bytes. It covers lists, including their
+    /// copies while they grow, and the state of the decompressor.
     constant: usize,
 }
 
@@ -46,12 +46,13 @@ const PACKED: Way = Way {
     constant: 160 * 1024,
 };
 
-/// However a body is made, to receive, inflate and read it takes no more memory than a multiple of
-/// what was received and inflated.
+/// Checks that no body takes more memory than a multiple of its received and inflated bytes.
+///
+/// The measurement covers receiving, inflating and reading.
 pub fn memory(data: &[u8]) {
     let mut input = Input::new(data);
     let row = &MESSAGES[usize::from(input.u16()) % MESSAGES.len()];
-    // Packing takes long: most are plain.
+    // Compression is slow, so only one input in 16 is also compressed.
     let ways: &[Way] = if data.len().is_multiple_of(16) {
         &[PLAIN, PACKED]
     } else {
@@ -78,7 +79,7 @@ pub fn memory(data: &[u8]) {
         let (first, rest) = bytes.split_at(1);
         let mut decoder = Decoder::<Fc>::new().verify_digest(false);
         decoder.push(first);
-        // From here on: the receive buffer is there, whatever comes.
+        // The measurement starts here, because the receive buffer exists before any frame.
         let before = COUNTING.current_usage();
         COUNTING.reset_peak_usage();
         decoder.push(rest);

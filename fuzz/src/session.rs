@@ -1,6 +1,6 @@
-//! The session state machine, fed arbitrary events, beside a model.
+//! Feeds arbitrary events to the session state machine and compares it with a model.
 //!
-//! Input: limits, first id, then one event after the other.
+//! Input: limits, the first id, then events.
 
 use crate::input::Input;
 use fc_generated::Fc;
@@ -8,7 +8,7 @@ use fc_runtime::{AckPolicy, Due, FrameId, Incoming, Limits, Protocol, Session, S
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
-/// What a wait too long for the clock is cut to.
+/// Replaces a timeout that the clock cannot represent.
 const NEVER: Duration = Duration::from_secs(60 * 60 * 24 * 365);
 
 struct Open {
@@ -18,7 +18,7 @@ struct Open {
     left: u32,
 }
 
-/// What is known of everything that ever happened.
+/// The expected state of the session, and all requests and reports so far.
 struct Model {
     open: HashMap<u32, Open>,
     opened: Vec<FrameId>,
@@ -37,8 +37,10 @@ impl Model {
     }
 }
 
-/// Every request ends exactly once, with its own answer and not before its time; no id is in flight
-/// twice; a report handed on is not handed on again while it may be repeated.
+/// Checks the promises of a session.
+///
+/// Every request ends exactly once: with its own response, or not before its deadline. No id is in flight twice. A
+/// delivered report is not delivered again while the peer may repeat it.
 pub fn session(data: &[u8]) {
     let mut input = Input::new(data);
     let in_flight = usize::from(input.byte() % 20);
@@ -188,7 +190,7 @@ fn report(
     match session.receive(frame, now) {
         Incoming::Repeated => {
             let index = known.expect("what is repeated was handed on");
-            // It has come again: the time it may be repeated starts anew.
+            // Each arrival restarts the time in which the peer may repeat the report.
             model.handed_on[index].1 = now;
         }
         Incoming::Report => {
@@ -222,7 +224,7 @@ fn lose(input: &mut Input<'_>, session: &mut Session<u32>, model: &mut Model) {
     }
 }
 
-/// A frame with any header at all.
+/// Receives a frame with an arbitrary header.
 fn anything(input: &mut Input<'_>, session: &mut Session<u32>, model: &mut Model, now: Instant) {
     let frame = FrameId {
         response: input.byte() % 2 == 1,

@@ -1,7 +1,7 @@
-//! The loader of specs: never panics, and what it accepts every product can be made of.
+//! Loads arbitrary specs and generates all products from the valid ones.
 //!
-//! Input: files, each opened by a line of [`SEPARATOR`](crate::SEPARATOR) and its path; text before the first is
-//! `spec/protocol.yaml`.
+//! Input: files. Each file starts with a line of [`SEPARATOR`](crate::SEPARATOR) and its path. Text before the first
+//! such line is `spec/protocol.yaml`.
 
 use fc_codegen::emit::generate;
 use fc_codegen::target::Targets;
@@ -10,8 +10,9 @@ use fc_spec::load::load;
 use fc_spec::model::Lang;
 use fc_spec::source::Sources;
 
-/// Any texts give a model or faults; faults can be shown in every format, and a model can be
-/// emitted as every product.
+/// Checks that loading returns either a model or errors, and never panics.
+///
+/// The diagnostics can be rendered in every format. Every product can be generated from a model.
 pub fn spec(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;

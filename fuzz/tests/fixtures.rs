@@ -1,9 +1,9 @@
-//! Every find of the fuzzers, run again: `fixtures/<target>/<name>`.
+//! Runs every target on its past finds, the files `fixtures/<target>/<name>`.
 
 use std::fs;
 use std::path::Path;
 
-/// For the target that looks at it.
+/// The target `memory` reads its counts.
 #[global_allocator]
 static ALLOCATOR: peak_alloc::PeakAlloc = fc_fuzz::COUNTING;
 
