@@ -1,4 +1,4 @@
-//! Many apps, many calls, and the end under load.
+//! Measures many apps, many calls, and the shutdown under load.
 
 use crate::fault::Fault;
 use crate::measure::{machine, quantile, resident};
@@ -25,7 +25,7 @@ pub async fn connect(port: u16) -> Result<Connection<Fc>, Fault> {
     Ok(Connection::connect(config(port)).await?)
 }
 
-/// Times one call after the other, `count` of them or as many as ten seconds allow.
+/// Times consecutive calls, `count` of them or as many as fit into ten seconds.
 pub async fn latencies(app: &Connection<Fc>, count: usize) -> Result<Vec<Duration>, Fault> {
     let request = GetRobotSnRequest::default();
     let mut times = Vec::with_capacity(count);
@@ -38,7 +38,7 @@ pub async fn latencies(app: &Connection<Fc>, count: usize) -> Result<Vec<Duratio
     Ok(times)
 }
 
-/// Opens `count` connections, each with one call, and keeps them open.
+/// Opens `count` connections, makes one call on each, and keeps them open.
 pub async fn connections(count: usize) -> Result<(), Fault> {
     println!("\n## {count} connections at once\n\n{}\n", machine());
     let robot = Robot::start(Places::MANY).await?;
@@ -84,7 +84,7 @@ pub async fn connections(count: usize) -> Result<(), Fault> {
     robot.end().await
 }
 
-/// Makes `count` calls, 64 in flight on each of four connections.
+/// Makes `count` calls on four connections, with 64 in flight on each.
 pub async fn calls(count: usize) -> Result<(), Fault> {
     println!("\n## {count} calls\n\n{}\n", machine());
     let mut robot = Robot::start(Places::MANY).await?;
@@ -137,8 +137,7 @@ pub async fn calls(count: usize) -> Result<(), Fault> {
     robot.end().await
 }
 
-/// Ends the robot while 100 apps have eight slow calls each in flight, with much and with little
-/// grace.
+/// Shuts the robot down while 100 apps have eight slow calls each in flight, with a long and a short grace period.
 pub async fn shutdown() -> Result<(), Fault> {
     println!("\n## Shutdown under load\n\n{}\n", machine());
     println!(

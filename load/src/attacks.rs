@@ -1,4 +1,4 @@
-//! Peers that do not mean well, and honest ones that are as busy.
+//! Hostile peers, and honest peers with a similar load.
 
 use crate::apps::connect;
 use crate::fault::Fault;
@@ -18,16 +18,16 @@ use tokio::time::{sleep, timeout};
 
 type Head = <Fc as Protocol>::Header;
 
-/// What a robot takes that is to be filled.
+/// Limits of the robot in the attack `silent`. One address can use all connections.
 pub const FEW: Places = Places {
     total: 2000,
     address: 2000,
 };
 
-/// Where an attacker comes from that fills a robot.
+/// Address of the attacker in the attack `silent`.
 const ATTACKER: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 3);
 
-/// No command has this code.
+/// A code that no command has.
 const UNKNOWN: u16 = 0xEEEE;
 
 fn id(code: u16) -> FrameId {
@@ -45,14 +45,14 @@ pub fn frame(code: u16, body: &[u8]) -> Result<Vec<u8>, Fault> {
     Ok(out)
 }
 
-/// A connection that comes from this address.
+/// Connects to `port` from this local address.
 pub async fn from(address: Ipv4Addr, port: u16) -> std::io::Result<TcpStream> {
     let socket = TcpSocket::new_v4()?;
     socket.bind((address, 0).into())?;
     socket.connect((Ipv4Addr::LOCALHOST, port).into()).await
 }
 
-/// Attacks until it is killed.
+/// Runs an attack, or honest work, until the process is killed.
 pub async fn attack(kind: &str, port: u16, data: u16) -> Result<(), Fault> {
     match kind {
         "bombs" => bombs(port).await,
@@ -101,7 +101,7 @@ pub async fn attack(kind: &str, port: u16, data: u16) -> Result<(), Fault> {
     }
 }
 
-/// Opens connections and does nothing with them.
+/// Opens connections and leaves them idle.
 async fn stay(port: u16, count: usize) -> Result<(), Fault> {
     let mut idle = Vec::new();
     for _ in 0..count {
@@ -110,7 +110,7 @@ async fn stay(port: u16, count: usize) -> Result<(), Fault> {
     std::future::pending().await
 }
 
-/// Takes and acknowledges reports on 100 connections.
+/// Receives and acknowledges reports on 100 connections.
 async fn listen(port: u16) -> Result<(), Fault> {
     let mut listening = JoinSet::new();
     for _ in 0..100 {
@@ -125,7 +125,7 @@ async fn reach(port: u16) -> Result<TcpStream, Fault> {
     loop {
         match TcpStream::connect(("127.0.0.1", port)).await {
             Ok(stream) => {
-                // No trace of a thousand connections a second.
+                // Closing resets the connection, so that a thousand closes a second leave no TIME_WAIT sockets.
                 #[allow(deprecated, reason = "an attacker does not wait for its close")]
                 stream.set_linger(Some(Duration::ZERO))?;
                 return Ok(stream);
@@ -135,7 +135,7 @@ async fn reach(port: u16) -> Result<TcpStream, Fault> {
     }
 }
 
-/// Sends the same frame over and over, on four connections. One that is closed is made again.
+/// Sends the same frame repeatedly on four connections. Opens a connection again after the robot closes it.
 async fn flood(port: u16, frame: Vec<u8>, read: bool) -> Result<(), Fault> {
     let many = frame.repeat(32 * 1024 / frame.len().max(1) + 1);
     let mut tasks = JoinSet::new();
@@ -167,7 +167,7 @@ async fn deaf(port: u16) -> Result<(), Fault> {
         let mut kept = Vec::new();
         for _ in 0..20 {
             let mut stream = reach(port).await?;
-            // As much as is taken; then the robot has stopped reading.
+            // A write that takes 20 ms means that the robot no longer reads.
             while timeout(Duration::from_millis(20), stream.write_all(&many))
                 .await
                 .is_ok_and(|sent| sent.is_ok())
@@ -225,8 +225,10 @@ async fn slow(port: u16) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Bodies of nothing but short unknown keys: one that says how long it becomes and is too long, the longest
-/// that a robot with its usual memory decompresses, and one with as many keys as it reads.
+/// Returns three compressed frames whose bodies repeat a short unknown key.
+///
+/// The first body is longer than a robot with the default memory inflates, and announces that length. The second has
+/// 36 MiB, which such a robot inflates. The third stays below the limit of keys and items.
 fn key_bombs() -> Result<Vec<u8>, Fault> {
     const KEY: &str = r#""a":[],"#;
     let limits = Fc::DEFAULTS.limits;
@@ -237,7 +239,7 @@ fn key_bombs() -> Result<Vec<u8>, Fault> {
     let mut bombs = Vec::new();
     let keys = limits.json_values / 2;
     for length in [limits.inflated_bytes as usize, 36 << 20, keys * KEY.len()] {
-        // As much that does not compress as makes the ratio an honest one.
+        // Text that does not compress keeps the ratio of the body within `inflate_ratio`.
         let mut noise = String::new();
         let mut seed = 1_u64;
         while noise.len() < length / limits.inflate_ratio as usize * 3 / 2 {
@@ -251,12 +253,13 @@ fn key_bombs() -> Result<Vec<u8>, Fault> {
     Ok(bombs)
 }
 
-/// What is left of a frame that is held, and what is sent of it each second, in bytes.
+/// Length of the end of a held frame, which is sent slowly, in bytes.
 const REST: usize = 1 << 20;
+/// Speed of sending that end, in bytes per second.
 const PIECE: usize = 2 * 1024;
 
-/// Claims frames as long as may be, sends all but the last of them at once, and that as slowly as passes
-/// for progress.
+/// Sends frames of the largest length on 64 connections. Sends all but the last [`REST`] bytes at once, and these only
+/// as fast as the robot requires.
 async fn held(port: u16) -> Result<(), Fault> {
     let total = Fc::DEFAULTS.limits.frame_bytes;
     let mut begun = frame(GetRobotSnRequest::CODE, b"{}")?;
@@ -276,7 +279,7 @@ async fn held(port: u16) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Sends a frame but for its rest, and that in pieces; again, when the robot has closed the connection.
+/// Sends the first part of a frame at once and its end in pieces. Starts again after the robot closes the connection.
 async fn hold(port: u16, begun: &[u8]) -> Result<Infallible, Fault> {
     loop {
         let mut stream = reach(port).await?;
@@ -290,8 +293,7 @@ async fn hold(port: u16, begun: &[u8]) -> Result<Infallible, Fault> {
     }
 }
 
-/// Opens connections from one address until there are as many as the robot takes, and opens those again
-/// that are closed.
+/// Opens as many connections from one address as the robot accepts. Opens a new one for each that the robot closes.
 async fn silent(ports: [u16; 2]) -> Result<(), Fault> {
     let mut attacks = JoinSet::new();
     for port in ports {
@@ -301,7 +303,7 @@ async fn silent(ports: [u16; 2]) -> Result<(), Fault> {
                 while open.len() < FEW.total {
                     match from(ATTACKER, port).await {
                         Ok(mut stream) => {
-                            // Until it is closed.
+                            // The read ends when the robot closes the connection.
                             open.spawn(async move { stream.read(&mut [0]).await });
                         }
                         Err(_) => sleep(Duration::from_millis(5)).await,

@@ -1,8 +1,8 @@
-//! What is said by variables of the environment.
+//! Settings from environment variables.
 
 use crate::fault::Fault;
 
-/// The number that a variable says, if it is there.
+/// Returns the number in an environment variable, or `default` if the variable is not set.
 pub fn number(name: &str, default: usize) -> Result<usize, Fault> {
     match std::env::var(name) {
         Ok(text) => text

@@ -1,6 +1,6 @@
-//! What can go wrong while measuring.
+//! Errors of a measurement.
 
 use std::error::Error;
 
-/// Whatever keeps a measurement from going on.
+/// Any error that ends a measurement.
 pub type Fault = Box<dyn Error + Send + Sync>;

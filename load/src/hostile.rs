@@ -1,4 +1,4 @@
-//! What peers that do not mean well cost the others.
+//! Measures the latency of an app while hostile peers attack the robot.
 
 use crate::apps::{config, connect, latencies};
 use crate::attacks::{FEW, frame, from};
@@ -15,7 +15,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::process::Child;
 use tokio::time::{sleep, timeout};
 
-/// An attack, what it is called in the table, and the honest work it is compared with.
+/// The attacks, each with its description in the table and the honest work to compare it with.
 const ATTACKS: &[(&str, &str, &str)] = &[
     (
         "bombs",
@@ -63,11 +63,11 @@ const ATTACKS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// Reports that a robot pushes each second to all apps; [`ATTACKS`] and [`HONEST`] say how many, too.
+/// Reports that the robot pushes to all apps each second. The texts in [`ATTACKS`] and [`HONEST`] repeat this number.
 const REPORTS: u32 = 20;
 
-/// A process that attacks, or does honest work, at the lowest priority: its own need for the
-/// processor is not what is measured.
+/// A process that attacks or does honest work. It has the lowest priority, so that its own CPU time does not slow the
+/// app down.
 struct Neighbour(Child);
 
 impl Neighbour {
@@ -85,7 +85,7 @@ impl Neighbour {
             .kill_on_drop(true)
             .spawn()
             .map_err(|error| format!("neighbours are started by `chrt` of util-linux: {error}"))?;
-        // Until all connections are there, and what they hold.
+        // Time for opening all connections and sending the held frames.
         let begun = if matches!(kind, "held" | "silent") {
             5000
         } else {
@@ -94,7 +94,7 @@ impl Neighbour {
         sleep(Duration::from_millis(begun)).await;
         if matches!(kind, "reports" | "listeners") {
             robot.tell(&format!("push {REPORTS}")).await?;
-            // Until as many are in flight as may be, and are sent again and again.
+            // Time until the limit of reports in flight is reached and the robot repeats them.
             sleep(Duration::from_secs(10)).await;
         }
         Ok(Self(child))
@@ -111,17 +111,17 @@ impl Neighbour {
     }
 }
 
-/// Where somebody comes from who comes anew.
+/// Address of a client that has no connection yet.
 const NEWCOMER: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 2);
 
-/// Whether somebody from another address is served at both ports.
+/// Returns `true` if both ports serve a client from another address within five seconds.
 async fn newcomer(robot: &Robot) -> bool {
     let (command, data) = (robot.port, robot.data);
     let come = async {
         let dial = move || from(NEWCOMER, command);
         let app = Connection::<Fc>::connect_by(dial, config(command)).await?;
         app.call(&GetRobotSnRequest::default()).await?;
-        // What has no business at the data port is refused there: an answer nonetheless.
+        // The data port refuses a command, but its response shows that the robot serves the client.
         let mut stream = from(NEWCOMER, data).await?;
         stream
             .write_all(&frame(GetRobotSnRequest::CODE, b"{}")?)
@@ -132,7 +132,7 @@ async fn newcomer(robot: &Robot) -> bool {
     matches!(timeout(Duration::from_secs(5), come).await, Ok(Ok(())))
 }
 
-/// Median and 99th percentile of an app's latency.
+/// Returns the median and the 99th percentile of an app's latency, in seconds.
 async fn latency(app: &Connection<Fc>) -> Result<[f64; 2], Fault> {
     let mut times = latencies(app, 3000).await?;
     Ok([0.5, 0.99].map(|share| quantile(&mut times, share).as_secs_f64()))
@@ -143,7 +143,7 @@ fn median(mut ratios: Vec<f64>) -> f64 {
     ratios.get(ratios.len() / 2).copied().unwrap_or_default()
 }
 
-/// Compares an app's latency beside each attack, and beside honest work, with that in the quiet.
+/// Compares an app's latency during each attack, and during honest work, with its latency without either.
 pub async fn compare() -> Result<(), Fault> {
     println!("\n## Hostile peers\n\n{}\n", machine());
     println!(
@@ -172,7 +172,7 @@ pub async fn compare() -> Result<(), Fault> {
         latencies(&app, 2000).await?;
         let before = resident(robot.process)?;
         let (mut most, mut highest, mut served) = (before, 0, 0);
-        // Median and 99 %, of attacks and honest work.
+        // By neighbour (attack, honest work), then by figure (median, 99 %).
         let mut ratios: [[Vec<f64>; 2]; 2] = Default::default();
         let mut quiet = latency(&app).await?;
         for _ in 0..rounds {

@@ -1,4 +1,4 @@
-//! What the engine stands, in figures.
+//! Measures the runtime under load and under attack.
 //!
 //! ```text
 //! cargo run --release -- all            everything below, one after the other
@@ -8,9 +8,9 @@
 //! cargo run --release -- hostile        an app's latency while other peers misbehave
 //! ```
 //!
-//! The robot, the apps and the attackers are processes of their own on loopback. `FC_CONNECTIONS`,
-//! `FC_CALLS` and `FC_ROUNDS` change the numbers, `FC_ATTACK` chooses one attack: bombs, keys, lengths,
-//! slow, held, codes, deaf, frames, panics, reports, connections or silent.
+//! The robot, the apps and the attackers are separate processes on loopback. `FC_CONNECTIONS`, `FC_CALLS` and
+//! `FC_ROUNDS` change the numbers. `FC_ATTACK` chooses one attack: bombs, keys, lengths, slow, held, codes, deaf,
+//! frames, panics, reports, connections or silent.
 
 mod apps;
 mod attacks;

@@ -1,19 +1,19 @@
-//! Memory of processes, the machine, medians.
+//! Memory of processes, a description of the machine, and quantiles.
 
 use crate::fault::Fault;
 use std::time::Duration;
 
-/// Resident memory of a process in KiB.
+/// Returns the resident memory of a process, in KiB.
 pub fn resident(process: u32) -> Result<usize, Fault> {
     memory(process, "VmRSS:")
 }
 
-/// The most of it since the peak was forgotten.
+/// Returns the largest resident memory of a process since the last [`forget_peak`], in KiB.
 pub fn peak(process: u32) -> Result<usize, Fault> {
     memory(process, "VmHWM:")
 }
 
-/// Lets the peak begin anew.
+/// Resets the peak of a process to its current memory.
 pub fn forget_peak(process: u32) -> Result<(), Fault> {
     Ok(std::fs::write(format!("/proc/{process}/clear_refs"), "5")?)
 }
@@ -25,7 +25,7 @@ fn memory(process: u32, which: &str) -> Result<usize, Fault> {
     Ok(text.ok_or_else(|| format!("no {which}"))?.parse()?)
 }
 
-/// The machine and how busy it is, for the head of a table.
+/// Returns the number of cores and the load average, for the heading of a table.
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
@@ -33,7 +33,7 @@ pub fn machine() -> String {
     format!("{cores} cores, load average {load}")
 }
 
-/// The value below which `share` of the times lie.
+/// Sorts the times and returns the value below which `share` of them lie.
 pub fn quantile(times: &mut [Duration], share: f64) -> Duration {
     times.sort_unstable();
     let index = (times.len() as f64 * share) as usize;

@@ -1,4 +1,4 @@
-//! The robot: a process of its own that is told what to do on its standard input.
+//! The robot, a separate process that takes orders from its standard input.
 
 use crate::fault::Fault;
 use fc_generated::{
@@ -16,10 +16,10 @@ use tokio::process::{Child, ChildStdin, ChildStdout};
 use tokio::task::JoinSet;
 use tokio::time::{interval, sleep};
 
-/// How long the robot thinks about [`GetStationRequest`].
+/// Time that the robot takes to handle a [`GetStationRequest`].
 pub const THINKING: Duration = Duration::from_secs(1);
 
-/// Answers with the examples, one command only after some time, and one with a panic.
+/// Answers with the examples. It handles one command slowly, and panics in the handler of another.
 struct Thoughtful(RobotService<ExampleRobot>);
 
 impl Service<Fc> for Thoughtful {
@@ -39,7 +39,7 @@ impl Service<Fc> for Thoughtful {
     }
 }
 
-/// How many connections a robot takes at each port, in total and from one address.
+/// Limits of the connections at each port, in total and from one address.
 #[derive(Clone, Copy)]
 pub struct Places {
     pub total: usize,
@@ -47,17 +47,17 @@ pub struct Places {
 }
 
 impl Places {
-    /// Enough for ten thousand apps; a part of a flood's address is for others.
+    /// Enough for ten thousand apps. A flood from one address leaves 1,000 connections for other addresses.
     pub const MANY: Self = Self {
         total: 20_000,
         address: 19_000,
     };
 }
 
-/// Serves until standard input ends. Says `listening PORT PORT` first; understands `push A_SECOND`,
-/// `counters` and `shutdown MILLISECONDS`, and answers each with a line.
+/// Serves until standard input ends. Prints `listening PORT PORT` first. Accepts the orders `push A_SECOND`, `counters`
+/// and `shutdown MILLISECONDS`, and prints a line after each.
 pub async fn serve(places: Places) -> Result<(), Fault> {
-    // What a panic prints is no business of the runtime.
+    // Printing a panic is not part of the runtime, so it must not count.
     std::panic::set_hook(Box::new(|_| {}));
     let limits = Limits {
         connections: places.total,
@@ -102,7 +102,7 @@ pub async fn serve(places: Places) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Pushes a report to all apps again and again, whatever becomes of the last.
+/// Pushes a report to all apps at regular intervals, without waiting for earlier pushes.
 async fn push(handle: ServerHandle<Fc>, every: Duration) {
     let mut turn = interval(every);
     let mut open = JoinSet::new();
@@ -114,14 +114,14 @@ async fn push(handle: ServerHandle<Fc>, every: Duration) {
     }
 }
 
-/// The robot as its parent sees it; ends with it.
+/// The parent's handle to the robot. Dropping it kills the process.
 pub struct Robot {
     child: Child,
     stdin: ChildStdin,
     lines: Lines<BufReader<ChildStdout>>,
-    /// For commands.
+    /// Port for commands.
     pub port: u16,
-    /// For streams.
+    /// Port for streams.
     pub data: u16,
     pub process: u32,
 }
@@ -134,7 +134,7 @@ impl Robot {
                 &places.total.to_string(),
                 &places.address.to_string(),
             ])
-            // As the unit in `operations/` runs it: what is freed goes back to the system.
+            // The unit in `operations/` sets this too, so that freed memory returns to the system.
             .env("MALLOC_MMAP_THRESHOLD_", "131072")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -158,7 +158,7 @@ impl Robot {
         })
     }
 
-    /// Tells the robot something and gives its answer.
+    /// Sends an order to the robot and returns the line that it prints.
     pub async fn tell(&mut self, what: &str) -> Result<String, Fault> {
         self.stdin.write_all(format!("{what}\n").as_bytes()).await?;
         Ok(self.lines.next_line().await?.ok_or("the robot has ended")?)
