@@ -1,4 +1,4 @@
-//! Compiles the peers' protobuf, without a protoc binary, and notes the compiler's version.
+//! Compiles the protobuf of the peers without `protoc`, and records the version of the compiler for the report.
 
 use std::process::Command;
 

@@ -1,9 +1,9 @@
-//! What a process has cost so far.
+//! CPU time, allocations and peak memory of this process.
 
 use crate::twin;
 use cpu_time::ProcessTime;
 
-/// CPU seconds and calls to the allocator since some start.
+/// Measures CPU time and allocations since its start.
 #[derive(Clone, Copy)]
 pub struct Meter {
     cpu: ProcessTime,
@@ -11,17 +11,17 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Starts now.
+    /// Starts a measurement.
     pub fn start() -> Self {
         Self { cpu: ProcessTime::now(), allocations: allocations() }
     }
 
-    /// CPU seconds of all threads since the start.
+    /// Returns the CPU seconds of all threads since the start.
     pub fn cpu(&self) -> f64 {
         self.cpu.elapsed().as_secs_f64()
     }
 
-    /// Allocations since the start; 0 unless this is the twin.
+    /// Returns the allocations since the start, or 0 if this process is not the [`twin`].
     pub fn allocations(&self) -> usize {
         allocations() - self.allocations
     }
@@ -32,7 +32,7 @@ fn allocations() -> usize {
     counted.new + counted.resized
 }
 
-/// The most memory this process has held, in MiB.
+/// Returns the peak memory of this process in MiB, or `NaN` if the system does not report it.
 pub fn peak_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -1,5 +1,7 @@
-//! Benchmarks of codec, calls, reports, data port, generator and generated code, beside floors and
-//! peers. Ratios within one run on one machine count; absolute times do not.
+//! Benchmarks of codec, calls, reports, data port, generator and generated code.
+//!
+//! Each group compares with a floor or with peers. Use only ratios within one run, because absolute times depend on the
+//! machine and its load.
 
 mod calls;
 mod codec;
@@ -28,10 +30,10 @@ groups: all codec calls reports data generator compile
 --quick   fewer rounds: a look, no figures to go by
 --report  with `all`: also write the results page of the documentation";
 
-/// What a group does, told whether to be quick.
+/// Function that measures a group. Its argument is `true` for `--quick`.
 type Group = fn(bool) -> Section;
 
-/// Every group, in the order of the report.
+/// All groups, in the order of the report.
 const GROUPS: &[(&str, Group)] = &[
     ("codec", codec::section),
     ("calls", calls::section),
@@ -41,7 +43,7 @@ const GROUPS: &[(&str, Group)] = &[
     ("compile", compile::section),
 ];
 
-/// The program.
+/// Runs the program with the arguments of this process.
 #[must_use]
 pub fn run() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -1,22 +1,22 @@
-//! The machine a report was made on, without its name.
+//! Description of the machine in a report, without its host name.
 
 use crate::report::{Table, t};
 use std::process::Command;
 
-/// What a reader has to know of it.
+/// A machine and the date of a report.
 #[derive(Clone, Debug)]
 pub struct Machine {
     date: String,
 }
 
 impl Machine {
-    /// This machine, on the given day or today.
+    /// Returns this machine, with the given date or today.
     #[must_use]
     pub fn new(date: Option<String>) -> Self {
         Self { date: date.unwrap_or_else(today) }
     }
 
-    /// As a table.
+    /// Returns the description as a table.
     #[must_use]
     pub fn table(&self) -> Table {
         let mut table = Table::new(t("机器", "Machine"), vec![t("机器", "machine"), "".into()]);

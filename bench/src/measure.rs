@@ -1,10 +1,10 @@
-//! Work on one thread, measured in its CPU time.
+//! Measures work on one thread by its CPU time.
 
 use crate::report::median;
 use cpu_time::ThreadTime;
 use std::time::Duration;
 
-/// Something to be measured.
+/// A function to measure.
 pub struct Case<'a> {
     run: Box<dyn FnMut() + 'a>,
     iterations: u32,
@@ -12,7 +12,7 @@ pub struct Case<'a> {
 }
 
 impl<'a> Case<'a> {
-    /// `run` is done many times.
+    /// Creates a case that calls `run` many times.
     pub fn new(run: impl FnMut() + 'a) -> Self {
         Self { run: Box::new(run), iterations: 1, seconds: Vec::new() }
     }
@@ -25,9 +25,9 @@ impl<'a> Case<'a> {
         start.elapsed()
     }
 
-    /// Finds out how many iterations take as long as a batch should.
+    /// Doubles the iterations until they take at least half of `batch`.
     fn calibrate(&mut self, batch: Duration) {
-        // Buffers grow, and what is decided once is decided.
+        // This first batch lets buffers grow and runs all one-time work.
         self.batch();
         while self.batch() < batch / 2 {
             self.iterations = self.iterations.saturating_mul(2);
@@ -35,24 +35,24 @@ impl<'a> Case<'a> {
     }
 }
 
-/// How long to measure.
+/// Number of rounds and length of a batch.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Rounds of all cases.
+    /// Rounds, each with one batch of every case.
     pub rounds: usize,
-    /// Least CPU time of a batch.
+    /// Intended CPU time of a batch. A batch takes at least half of it.
     pub batch: Duration,
 }
 
 impl Effort {
-    /// For a look or for a report.
+    /// Returns the effort for a quick look or for a report.
     #[must_use]
     pub fn of(quick: bool) -> Self {
         Self { rounds: if quick { 15 } else { 101 }, batch: Duration::from_millis(1) }
     }
 }
 
-/// Median seconds of one iteration of each case. The cases take turns, each round in another order.
+/// Returns the median seconds of one iteration of each case. The cases take turns, in a new random order each round.
 #[must_use]
 pub fn measure(mut cases: Vec<Case<'_>>, effort: Effort) -> Vec<f64> {
     for case in &mut cases {

@@ -1,21 +1,21 @@
-//! Processes of this program that serve and drive, and what they say on their standard output.
+//! Child processes, which serve or drive, and the lines that they print.
 
 use std::ffi::OsString;
 use std::io::{BufRead as _, BufReader, Lines, Write as _};
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 
-/// A process that is being talked to line by line.
+/// A child process that reads and prints lines.
 pub struct Process {
     child: Child,
     lines: Lines<BufReader<ChildStdout>>,
 }
 
-/// Figures of one line.
+/// The numbers in one printed line.
 pub type Figures = Vec<f64>;
 
 impl Process {
-    /// Starts `program`, on one core if `core` says which.
+    /// Starts `program`, pinned to a core if `core` is set.
     pub fn start(program: &Path, arguments: &[&str], core: Option<usize>) -> Self {
         let mut command = match core {
             Some(core) => {
@@ -35,23 +35,23 @@ impl Process {
         Self { child, lines }
     }
 
-    /// The next line that it prints.
+    /// Returns the next line that the process prints.
     pub fn line(&mut self) -> String {
         self.lines.next().expect("a line").expect("text")
     }
 
-    /// The figures of the next line.
+    /// Returns the numbers in the next line.
     pub fn figures(&mut self) -> Figures {
         let line = self.line();
         line.split_whitespace().map(|word| word.parse().expect("a figure")).collect()
     }
 
-    /// Sends it a line.
+    /// Sends a line to the process.
     pub fn tell(&mut self, line: &str) {
         writeln!(self.child.stdin.as_mut().expect("its input"), "{line}").expect("it listens");
     }
 
-    /// Ends its input, which tells it to come to an end, and gives the figures that it prints then.
+    /// Closes the input, which ends the process, and returns the last numbers that the process prints.
     pub fn end(mut self) -> Figures {
         drop(self.child.stdin.take());
         let figures = self.figures();
@@ -60,7 +60,7 @@ impl Process {
     }
 }
 
-/// Also when something has gone wrong.
+/// Kills the process, also after a panic in this program.
 impl Drop for Process {
     fn drop(&mut self) {
         let _ = self.child.kill();
@@ -68,7 +68,7 @@ impl Drop for Process {
     }
 }
 
-/// The cores for server and driver: one each, where there are two.
+/// Returns the cores for server and driver, or `None` twice on a machine with a single core.
 pub fn cores() -> (Option<usize>, Option<usize>) {
     let two = std::thread::available_parallelism().is_ok_and(|cores| cores.get() >= 2);
     if two { (Some(0), Some(1)) } else { (None, None) }

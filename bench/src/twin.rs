@@ -1,5 +1,6 @@
-//! Allocations are counted by a twin of this program: counting costs time, and what is timed must not
-//! pay for it.
+//! The twin: a second program with the same code that counts allocations.
+//!
+//! Counting takes time, so the program that measures times must not count.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -17,17 +18,17 @@ pub struct Allocations {
     pub resized: usize,
 }
 
-/// Says how the twin counts.
+/// Sets the function that counts allocations. Only the twin calls this.
 pub fn install(counter: fn() -> Allocations) {
     let _ = COUNTER.set(counter);
 }
 
-/// Allocations of this process so far; none unless it is the twin.
+/// Returns the allocations of this process so far, or none if it is not the twin.
 pub fn allocations() -> Allocations {
     COUNTER.get().map(|counter| counter()).unwrap_or_default()
 }
 
-/// The twin's program, built if need be.
+/// Returns the path of the twin. The first call builds it.
 pub fn program() -> PathBuf {
     TWIN.get_or_init(build).clone()
 }

@@ -1,20 +1,20 @@
-//! Frames that the benchmarks of all languages read and write: the same bytes for each of them.
+//! The frames that the benchmarks of all languages read and write.
 
 use crate::messages;
 use fc_generated::Fc;
 use fc_runtime::{Encoder, Message};
 use std::path::{Path, PathBuf};
 
-/// Stations of the list that makes a message between 1 and 2 KB.
+/// Number of stations in the medium frame, which has between 1 and 2 KB.
 const FEW: usize = 10;
 
-/// Where they lie.
+/// Returns the directory of the frames.
 #[must_use]
 pub fn directory() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../frames")
 }
 
-/// Names of files, and their bytes.
+/// Returns the file names and contents of all frames.
 #[must_use]
 pub fn all() -> Vec<(&'static str, Vec<u8>)> {
     vec![
@@ -26,7 +26,7 @@ pub fn all() -> Vec<(&'static str, Vec<u8>)> {
 
 fn frame<M: Message>(message: &M) -> Vec<u8> {
     let mut frame = Vec::new();
-    // The list has no code of its own yet; which type a body has, the reader is told.
+    // Every frame has the code of the request for a station. Readers know the type of the body from the file name.
     let id = messages::station_id();
     Encoder::<Fc>::new().message(&mut frame, id, &messages::envelope(), message).expect("it fits");
     frame

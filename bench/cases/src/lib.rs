@@ -1,4 +1,4 @@
-//! What is measured: messages of three sizes, their frames for all languages, and specs of any size.
+//! The material of the benchmarks: messages of three sizes, their frames for all languages, and synthetic specs.
 
 pub mod frames;
 pub mod messages;

@@ -1,5 +1,5 @@
-//! Messages of three sizes, in the protocol's own types. They begin as the spec's examples, so that a key
-//! that the spec gains is there too.
+//! Messages of three sizes, in the types of the protocol. They start as examples of the spec, so that they include keys
+//! that the spec adds later.
 
 use fc_derive::Message;
 use fc_generated::{
@@ -9,47 +9,47 @@ use fc_generated::{
 use fc_runtime::{Bytes64, Command as _, Extra, FrameId, Message as _, Protocol as _, ResponseEnvelope as _};
 use std::sync::LazyLock;
 
-/// When every message was made, in milliseconds since 1970.
+/// Time in the envelope of every message, in milliseconds since 1970.
 pub const TIME: i64 = 1_667_823_500_544;
-/// The station that is asked for.
+/// Id of the requested station.
 pub const STATION: i64 = 1_671_124_918_008;
-/// Its name.
+/// Name of the requested station.
 pub const STATION_NAME: &str = "gate1";
 /// Result code of success.
 #[allow(clippy::cast_possible_truncation, reason = "as a message has it")]
 pub const RESULT_CODE: i32 = Fc::RESULTS.success.code as i32;
-/// Text beside the result.
+/// Result text of success.
 pub const RESULT_TEXT: &str = Fc::RESULTS.success.text;
-/// Bytes of the picture of a map: 1 MiB of base64 text.
+/// Length of the picture of a map, in bytes. It has 1 MiB as base64 text.
 pub const PICTURE: usize = 1024 * 1024 / 4 * 3;
-/// Stations of a medium message.
+/// Number of stations in a medium message.
 pub const STATIONS: usize = 150;
 
-/// Id of a response frame.
+/// Returns the id of a response frame.
 #[must_use]
 pub fn response_id(code: u16) -> FrameId {
     FrameId { response: true, kind: Fc::COMMAND, code, id: 90_842_323 }
 }
 
-/// The frame that answers for a station.
+/// Returns the id of a frame that responds with a station.
 #[must_use]
 pub fn station_id() -> FrameId {
     response_id(GetStationRequest::CODE)
 }
 
-/// The frame that brings a map.
+/// Returns the id of a frame that responds with a map.
 #[must_use]
 pub fn map_id() -> FrameId {
     response_id(GetMapImageRequest::CODE)
 }
 
-/// Envelope of every response.
+/// Returns the envelope of every response.
 #[must_use]
 pub fn envelope() -> ResponseEnvelope {
     ResponseEnvelope::at(TIME, Fc::RESULTS.success.code, RESULT_TEXT)
 }
 
-/// A request of about 60 bytes.
+/// Returns a request for a station, of about 60 bytes.
 #[must_use]
 pub fn station_request() -> GetStationRequest {
     static REQUEST: LazyLock<GetStationRequest> = LazyLock::new(|| {
@@ -60,7 +60,7 @@ pub fn station_request() -> GetStationRequest {
     REQUEST.clone()
 }
 
-/// A request for the picture of a map.
+/// Returns a request for the picture of a map.
 #[must_use]
 pub fn map_request() -> GetMapImageRequest {
     static REQUEST: LazyLock<GetMapImageRequest> = LazyLock::new(|| {
@@ -71,7 +71,7 @@ pub fn map_request() -> GetMapImageRequest {
     REQUEST.clone()
 }
 
-/// About 150 bytes with the envelope.
+/// Returns a small message, about 150 bytes with the envelope.
 #[must_use]
 pub fn small(station: i64) -> GetStationResponse {
     static RESPONSE: LazyLock<GetStationResponse> = LazyLock::new(|| {
@@ -88,7 +88,7 @@ pub fn small(station: i64) -> GetStationResponse {
     response
 }
 
-/// Stations with their positions as JSON numbers; no operation of the spec answers such a list.
+/// A list of stations with positions as JSON numbers. No response of the spec has such a list.
 #[derive(Clone, Debug, PartialEq, Message)]
 pub struct StationList {
     /// The stations.
@@ -98,7 +98,7 @@ pub struct StationList {
     pub extra: Extra,
 }
 
-/// One of them.
+/// A station in a [`StationList`].
 #[derive(Clone, Debug, PartialEq, Message)]
 pub struct Station {
     /// Name.
@@ -107,24 +107,24 @@ pub struct Station {
     /// Id.
     #[fc(key = "stationId")]
     pub station_id: i64,
-    /// Id of the device there.
+    /// Id of the device at the station.
     #[fc(key = "deviceId")]
     pub device_id: String,
-    /// Name of its map.
+    /// Name of the map.
     #[fc(key = "mapName")]
     pub map_name: String,
-    /// Metres.
+    /// Position, in metres.
     pub x: f64,
-    /// Metres.
+    /// Position, in metres.
     pub y: f64,
-    /// Radians.
+    /// Direction, in radians.
     pub yaw: f64,
     /// Unknown keys.
     #[fc(extra)]
     pub extra: Extra,
 }
 
-/// Some angle or length with five decimals.
+/// Returns an angle or a length with five decimals.
 fn number(index: usize, step: i32) -> f64 {
     let index = i32::try_from(index).unwrap_or(0);
     f64::from((index * step) % 2_000_000 - 1_000_000) / 100_000.0
@@ -134,7 +134,7 @@ fn station_number(index: usize) -> i64 {
     STATION + i64::try_from(index).unwrap_or(0) * 977
 }
 
-/// About 20 KB: positions as JSON numbers.
+/// Returns a medium message, about 20 KB, with positions as JSON numbers.
 #[must_use]
 pub fn medium() -> StationList {
     let station = |index| Station {
@@ -150,13 +150,13 @@ pub fn medium() -> StationList {
     StationList { stations: (0..STATIONS).map(station).collect(), extra: Extra::new() }
 }
 
-/// About 20 KB: positions as strings, as the spec's list of stations has them.
+/// Returns a medium message, about 20 KB, with positions as strings, as in the spec's list of stations.
 #[must_use]
 pub fn medium_text() -> ListStationsResponse {
     stations(STATIONS)
 }
 
-/// So many stations of the spec's list.
+/// Returns the spec's list with this number of stations.
 #[must_use]
 pub fn stations(count: usize) -> ListStationsResponse {
     let example = ListedStation::example();
@@ -177,7 +177,7 @@ pub fn stations(count: usize) -> ListStationsResponse {
     response
 }
 
-/// Bytes that do not compress.
+/// Returns bytes that do not compress.
 #[must_use]
 pub fn picture(length: usize) -> Vec<u8> {
     let mut state = 0x9E37_79B9_u32;
@@ -190,13 +190,13 @@ pub fn picture(length: usize) -> Vec<u8> {
     (0..length).map(|_| next()).collect()
 }
 
-/// 1 MiB of base64 text.
+/// Returns a large message, a map with 1 MiB of base64 text.
 #[must_use]
 pub fn large() -> GetMapImageResponse {
     map_of(picture(PICTURE))
 }
 
-/// A map with this picture.
+/// Returns a map with this picture.
 #[must_use]
 pub fn map_of(picture: Vec<u8>) -> GetMapImageResponse {
     let mut response = GetMapImageResponse::example();

@@ -1,4 +1,4 @@
-//! The frames that lie there for all languages are those that the spec makes now.
+//! Checks that the files in `bench/frames` equal the frames that the spec produces now.
 
 use fc_bench_cases::frames;
 

@@ -1,4 +1,4 @@
-//! What the groups say: tables, targets and prose, in Chinese and English.
+//! The results of the groups, as tables, targets and prose in Chinese and English.
 
 pub mod packages;
 mod section;
@@ -11,20 +11,20 @@ pub use table::Table;
 pub use target::{Target, table as targets_table};
 pub use text::{Language, Text, t};
 
-/// What one group has found.
+/// The results of one group.
 #[derive(Clone, Debug)]
 pub struct Section {
     /// Heading.
     pub title: Text,
-    /// What was measured and how to read it.
+    /// Explanation of the measurement and its figures.
     pub about: Text,
-    /// The figures.
+    /// Tables of the figures.
     pub tables: Vec<Table>,
-    /// What they have to be.
+    /// Targets of the figures.
     pub targets: Vec<Target>,
 }
 
-/// The middle of some values; `NaN` of none.
+/// Returns the median, or `NaN` without values.
 #[must_use]
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
@@ -32,14 +32,14 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// How often `base` goes into `value`, with two decimals.
+/// Returns `value / base` with two decimals.
 #[must_use]
 pub fn ratio(value: f64, base: f64) -> String {
     let ratio = value / base;
     if ratio.is_finite() { format!("{ratio:.2}") } else { "–".to_owned() }
 }
 
-/// A time with three digits and its unit.
+/// Formats a number of seconds with three digits and a suitable unit.
 #[must_use]
 pub fn seconds(value: f64) -> String {
     let (value, unit) = match value {
@@ -52,7 +52,7 @@ pub fn seconds(value: f64) -> String {
     format!("{} {unit}", digits(value))
 }
 
-/// A figure with three digits.
+/// Returns a figure with at least three digits.
 #[must_use]
 pub fn digits(value: f64) -> String {
     match value {
@@ -63,7 +63,7 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// A whole number with its thousands apart.
+/// Returns a whole number with commas between the thousands.
 #[must_use]
 pub fn thousands(value: f64) -> String {
     if !value.is_finite() {

@@ -1,10 +1,10 @@
-//! A section as Markdown.
+//! Sections as Markdown.
 
 use super::target::table;
 use super::{Language, Section};
 use std::fmt::Write as _;
 
-/// A section for the terminal.
+/// Returns a section for the terminal, in English.
 #[must_use]
 pub fn terminal(section: &Section) -> String {
     whole(section, Language::English)
@@ -22,7 +22,7 @@ fn write(out: &mut String, section: &Section, language: Language) {
     out.push('\n');
 }
 
-/// A section without its targets: on a page all of them stand together at the top.
+/// Returns a section without its targets, because the page lists all targets at the top.
 #[must_use]
 pub fn without_targets(section: &Section, language: Language) -> String {
     let mut out = String::new();
@@ -30,7 +30,7 @@ pub fn without_targets(section: &Section, language: Language) -> String {
     out
 }
 
-/// A section with its targets.
+/// Returns a section with its targets.
 #[must_use]
 pub(crate) fn whole(section: &Section, language: Language) -> String {
     let mut out = String::new();

@@ -2,19 +2,19 @@
 
 use super::{Language, Text};
 
-/// Rows of cells below a heading.
+/// A table with a heading.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// Heading.
     pub title: Text,
-    /// Heads of the columns.
+    /// Column headings.
     pub columns: Vec<Text>,
-    /// Cells; the first of each row names it.
+    /// Rows of cells. The first cell is the name of the row.
     pub rows: Vec<Vec<Text>>,
 }
 
 impl Table {
-    /// A table without rows.
+    /// Creates a table without rows.
     #[must_use]
     pub fn new(title: Text, columns: Vec<Text>) -> Self {
         Self { title, columns, rows: Vec::new() }
@@ -25,7 +25,7 @@ impl Table {
         self.rows.push(cells);
     }
 
-    /// Markdown, which is also fit to be read on a terminal: cells are padded.
+    /// Returns the table as Markdown. The cells are padded, so that it is also readable on a terminal.
     #[must_use]
     pub fn markdown(&self, language: Language) -> String {
         let get = |cells: &[Text]| cells.iter().map(|cell| cell.get(language).to_owned()).collect::<Vec<_>>();
@@ -37,7 +37,7 @@ impl Table {
                 cells.chain(columns.get(column)).map(|cell| width(cell)).max().unwrap_or(0).max(3)
             })
             .collect();
-        // Names to the left, figures to the right.
+        // Names are aligned to the left, figures to the right.
         let rule: Vec<_> = widths
             .iter()
             .enumerate()
@@ -59,7 +59,7 @@ fn line(cells: &[String], widths: &[usize]) -> String {
     out
 }
 
-/// Columns of a terminal; Chinese takes two each.
+/// Returns the width of a text in columns of a terminal. A Chinese character takes two.
 fn width(text: &str) -> usize {
     text.chars().map(|letter| if letter >= '\u{2E80}' { 2 } else { 1 }).sum()
 }

@@ -1,13 +1,13 @@
-//! What a figure has to be.
+//! Targets: figures with bounds.
 
 use super::{Table, Text, digits, t};
 
-/// On which side of its bounds a figure has to lie.
+/// The good direction of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
-    /// The less the better.
+    /// Less is better.
     AtMost,
-    /// The more the better.
+    /// More is better.
     AtLeast,
 }
 
@@ -16,34 +16,34 @@ pub enum Sense {
 pub struct Target {
     /// Number of the target.
     pub id: &'static str,
-    /// What the figure is.
+    /// Description of the figure.
     pub what: Text,
-    /// On which side it has to lie.
+    /// Good direction of the figure.
     pub sense: Sense,
-    /// Must be reached.
+    /// Bound that must be reached.
     pub must: f64,
-    /// Is hoped for.
+    /// Better bound, which is optional.
     pub stretch: f64,
-    /// What was measured; `NaN` for nothing.
+    /// Measured figure, or `NaN` if it was not measured.
     pub value: f64,
-    /// Unit of all three; empty for a ratio.
+    /// Unit of the figure and its bounds. It is empty for a ratio.
     pub unit: &'static str,
 }
 
 impl Target {
-    /// A ratio that has to be small.
+    /// Creates a target for a ratio that must be small.
     #[must_use]
     pub fn at_most(id: &'static str, what: Text, must: f64, stretch: f64, value: f64) -> Self {
         Self { id, what, sense: Sense::AtMost, must, stretch, value, unit: "" }
     }
 
-    /// A ratio that has to be large.
+    /// Creates a target for a ratio that must be large.
     #[must_use]
     pub fn at_least(id: &'static str, what: Text, must: f64, stretch: f64, value: f64) -> Self {
         Self { sense: Sense::AtLeast, ..Self::at_most(id, what, must, stretch, value) }
     }
 
-    /// Gives the figure a unit.
+    /// Sets the unit.
     #[must_use]
     pub fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
@@ -56,7 +56,7 @@ impl Target {
         }
     }
 
-    /// Whether what must be reached is.
+    /// Returns `true` if the figure reaches the bound `must`.
     #[must_use]
     pub fn is_met(&self) -> bool {
         self.reaches(self.must)
@@ -83,7 +83,7 @@ impl Target {
     }
 }
 
-/// Targets as a table.
+/// Returns targets as a table.
 #[must_use]
 pub fn table(targets: &[Target]) -> Table {
     let columns = vec![

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// Which of the two.
+/// A language of the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
     /// 中文.
@@ -11,7 +11,7 @@ pub enum Language {
     English,
 }
 
-/// Text in both.
+/// A text in both languages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     chinese: Cow<'static, str>,
@@ -19,7 +19,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// The text in `language`.
+    /// Returns the text in `language`.
     #[must_use]
     pub fn get(&self, language: Language) -> &str {
         match language {
@@ -29,12 +29,12 @@ impl Text {
     }
 }
 
-/// A text in both languages.
+/// Creates a text in both languages.
 pub fn t(chinese: impl Into<Cow<'static, str>>, english: impl Into<Cow<'static, str>>) -> Text {
     Text { chinese: chinese.into(), english: english.into() }
 }
 
-/// Names and figures are the same in both.
+/// Names and figures are the same in both languages.
 impl From<&'static str> for Text {
     fn from(text: &'static str) -> Self {
         t(text, text)

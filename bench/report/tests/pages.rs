@@ -1,4 +1,5 @@
-//! The pages show what the reports say.
+//! Checks that the results pages show the reports of the packages, and that a new block leaves the rest of a page as it
+//! was.
 
 use fc_bench_report::packages;
 

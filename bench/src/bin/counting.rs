@@ -1,4 +1,4 @@
-//! The benchmark's twin that counts allocations; the benchmark itself runs it.
+//! The twin of the benchmark, which counts allocations. The benchmark builds and starts it.
 
 use fc_bench::twin::{self, Allocations};
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};

@@ -1,4 +1,4 @@
-//! Us: the generated client, and a service of two commands.
+//! Peer `fc`: the generated client, and a service with two commands.
 
 use super::peer::{Question, Serving};
 use fc_bench_cases::messages;
@@ -10,23 +10,23 @@ use fc_runtime::{
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
-/// How large answers come about.
+/// Encoding of large responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answers {
-    /// Each for itself.
+    /// For each request.
     Made,
-    /// Once for all.
+    /// Once for all requests.
     Prepared,
 }
 
-/// Answers for stations and maps.
+/// A service that responds with stations and maps.
 pub struct Robot {
     map: Arc<GetMapImageResponse>,
     prepared: Option<PreparedResponse<GetMapImageResponse>>,
 }
 
 impl Robot {
-    /// With a picture of the usual size.
+    /// Creates a service whose map has 1 MiB of base64 text.
     pub fn new(answers: Answers) -> Self {
         let map = messages::large();
         let prepared =
@@ -52,7 +52,7 @@ impl Service<Fc> for Robot {
     }
 }
 
-/// A server on free ports with room for many apps.
+/// Binds a server to free ports, with room for many apps.
 pub async fn bind(service: impl Service<Fc>) -> Server<Fc> {
     let limits = Limits { connections: 4096, ..Fc::DEFAULTS.limits };
     let config = ServerConfig::new()
@@ -64,7 +64,7 @@ pub async fn bind(service: impl Service<Fc>) -> Server<Fc> {
     Server::bind(config, service).await.expect("bind")
 }
 
-/// How an app finds a server at `address`.
+/// Returns the settings of an app for the server at `address`.
 pub fn config(address: SocketAddr) -> ClientConfig {
     ClientConfig::new().host(address.ip().to_string()).command_port(address.port())
 }

@@ -1,6 +1,7 @@
-//! The floor of a lone call that the wire format sets: `raw`, and on top of it just what each frame
-//! needs. `raw-md5` computes the four digests of a call and parses nothing; `raw-codec` reads and
-//! writes the frames with the codec and keeps no session: no table of calls, no ids, no time limits.
+//! Floors of a lone call with the wire format of fc. They are `raw` plus the work on each frame.
+//!
+//! `raw-md5` computes the four digests of a call and parses nothing. `raw-codec` reads and writes the frames with the
+//! codec. It has no session, and therefore no table of calls, no new ids and no timeouts.
 
 use super::peer::{Question, Serving, listen};
 use fc_bench_cases::messages;
@@ -15,16 +16,16 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::sync::Mutex;
 
-/// What is done with each frame.
+/// Work on each frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// Its digest.
+    /// Compute the digest.
     Digest,
-    /// All that the codec does.
+    /// Encode or decode the frame with the codec.
     Codec,
 }
 
-/// Length of the header.
+/// Length of a frame header, in bytes.
 const HEADER: usize = <Fc as Protocol>::Header::LEN;
 
 /// One side of a connection.
@@ -44,7 +45,9 @@ impl Side {
         Self { work, stream, input: vec![0; 64 * 1024], output: Vec::new(), decoder, encoder }
     }
 
-    /// Sends a message; where only digests are wanted, as many bytes as it has.
+    /// Sends a message. [`Work::Digest`] encodes only the first message and sends it again with a new digest.
+    ///
+    /// Returns `false` if the connection is closed.
     async fn send<E: Message, M: Message>(&mut self, id: FrameId, envelope: &E, message: &M) -> bool {
         match self.work {
             Work::Codec => {
@@ -62,7 +65,7 @@ impl Side {
         self.stream.write_all(&self.output).await.is_ok()
     }
 
-    /// Waits for a frame of one read and gives its message.
+    /// Receives a frame, which must arrive in one read. [`Work::Digest`] returns no message.
     async fn receive<E: Message, M: Message>(&mut self) -> Option<Received<M>> {
         let read = self.stream.read(&mut self.input).await.ok().filter(|read| *read > 0)?;
         let bytes = &self.input[..read];
@@ -88,7 +91,7 @@ struct Received<M> {
     message: Option<M>,
 }
 
-/// Answers for stations.
+/// Serves requests for stations.
 pub async fn serve(work: Work) -> Serving {
     let (address, listener) = listen().await;
     let serving = async move {

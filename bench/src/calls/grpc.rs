@@ -1,4 +1,4 @@
-//! Peer: tonic with prost.
+//! Peer `tonic`, with prost.
 
 use super::peer::{Question, Serving, listen, map_text};
 use fc_bench_cases::messages::{RESULT_CODE, RESULT_TEXT, STATION, STATION_NAME, TIME};

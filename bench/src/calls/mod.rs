@@ -1,4 +1,4 @@
-//! Calls over loopback: server and driver as separate processes, one core each.
+//! Measures calls over loopback. Server and driver are separate processes with one core each.
 
 pub mod fc;
 mod frames;
@@ -22,10 +22,10 @@ use std::path::{Path, PathBuf};
 use tables::{Peers, Round};
 use tarpc_peer::Format;
 
-/// Peers in the order of the report: the floors, us, the others.
+/// Peers in the order of the report: the floors, fc, the others.
 const PEERS: &[&str] = &["raw", "raw-mux", "fc", "fc-naive", "tonic", "tarpc-bincode", "tarpc-json"];
 
-/// Those that are measured in a scenario: where answers are large, also a robot that has prepared them.
+/// Returns the peers of a scenario. Lone small calls add two floors, and large responses add `fc-prepared`.
 fn peers(scenario: Scenario) -> Vec<&'static str> {
     let more: &[&str] = match (scenario.name, scenario.question) {
         ("one", _) => &["raw-md5", "raw-codec"],
@@ -35,10 +35,10 @@ fn peers(scenario: Scenario) -> Vec<&'static str> {
     PEERS.iter().chain(more).copied().collect()
 }
 
-/// Seconds that each peer is measured for in each scenario, over all rounds.
+/// Time for each peer in each scenario, over all rounds, in seconds.
 const MEASURED: f64 = 3.0;
 
-/// A runtime with one thread or with two workers.
+/// Creates a runtime with one thread or with two workers.
 pub fn runtime(multi_thread: bool) -> tokio::runtime::Runtime {
     let mut builder = if multi_thread {
         let mut builder = tokio::runtime::Builder::new_multi_thread();
@@ -50,8 +50,9 @@ pub fn runtime(multi_thread: bool) -> tokio::runtime::Runtime {
     builder.enable_all().build().expect("runtime")
 }
 
-/// `serve PEER single|threads`: prints the address; measures from the line `go` to the end of its
-/// input; prints CPU seconds and allocations.
+/// Runs `serve PEER single|threads`. Prints the address of the server.
+///
+/// After the line `go`, prints `ready` and measures until the input ends. Then prints CPU seconds and allocations.
 pub fn serve(peer: &str, multi_thread: bool) {
     let runtime = runtime(multi_thread);
     let (address, serving) = runtime.block_on(async {
@@ -85,7 +86,7 @@ pub fn serve(peer: &str, multi_thread: bool) {
     }
 }
 
-/// `drive PEER ADDRESS SCENARIO CALLS`: prints seconds, p50, p99, CPU seconds and allocations.
+/// Runs `drive PEER ADDRESS SCENARIO CALLS`. Prints seconds, p50, p99, CPU seconds and allocations.
 pub fn run_driver(peer: &str, address: SocketAddr, scenario: &str, calls: usize) {
     let scenario = *SCENARIOS.iter().find(|known| known.name == scenario).expect("a scenario");
     let runtime = runtime(scenario.multi_thread);
@@ -101,7 +102,7 @@ pub fn run_driver(peer: &str, address: SocketAddr, scenario: &str, calls: usize)
 
 async fn go(peer: &str, address: SocketAddr, scenario: Scenario, calls: usize, ready: impl FnOnce()) -> Measured {
     match peer {
-        // One caller sends a whole window at once: the floor has no cost for keeping calls apart.
+        // One caller sends a whole window at once, so that keeping calls apart costs the floor nothing.
         "raw" => {
             let window = scenario.in_flight;
             let single = Scenario { in_flight: 1, ..scenario };
@@ -155,7 +156,7 @@ fn round(program: &Path, peer: &str, scenario: Scenario, calls: usize) -> Round 
     }
 }
 
-/// As many calls as every caller can have the same share of.
+/// Rounds down to a number of calls that all callers can share equally, at least one each.
 fn whole(calls: f64, scenario: Scenario) -> usize {
     let callers = scenario.connections * scenario.in_flight;
     (calls as usize / callers).max(1) * callers
@@ -189,7 +190,7 @@ fn measure(scenario: Scenario, quick: bool, own: &Path, twin: &Path) -> Peers {
     peers
 }
 
-/// The group.
+/// Measures this group and returns its section.
 pub fn section(quick: bool) -> Section {
     let own: PathBuf = std::env::current_exe().expect("own path");
     let twin = twin::program();

@@ -1,5 +1,6 @@
-//! The same protocol as it is written by hand on a first afternoon: a task per request, a write per
-//! frame, `md-5`, `serde_json`, a map of oneshots.
+//! Peer `fc-naive`: a simple hand-written version of the protocol.
+//!
+//! It has a task per request, a write per frame, `md-5`, `serde_json`, and a map of oneshots.
 
 use super::peer::{Question, Serving, listen};
 use crate::codec::reference::{Large, Reference, Small};
@@ -50,7 +51,7 @@ async fn read(stream: &mut (impl AsyncRead + Unpin)) -> Option<Frame> {
     Some(Frame { code: u16::from_be_bytes([header[3], header[4]]), id: number(5), body })
 }
 
-/// A task that writes what it is given.
+/// Starts a task that writes the frames of a channel.
 fn writer(mut stream: impl tokio::io::AsyncWrite + Send + Unpin + 'static) -> mpsc::UnboundedSender<Vec<u8>> {
     let (sender, mut frames) = mpsc::unbounded_channel::<Vec<u8>>();
     tokio::spawn(async move {

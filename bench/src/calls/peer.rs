@@ -1,4 +1,4 @@
-//! What every peer of the call benchmark offers: a server, and calls for a driver to make.
+//! The scenarios, and the parts that all peers share: sockets of servers, and a driver that makes calls.
 
 use fc_bench_cases::messages;
 use std::future::Future;
@@ -7,10 +7,10 @@ use std::pin::Pin;
 use std::time::{Duration, Instant};
 use tokio::net::TcpListener;
 
-/// A server's address and its work.
+/// The address of a server and the future that runs it.
 pub type Serving = (SocketAddr, Pin<Box<dyn Future<Output = ()> + Send>>);
 
-/// What is called.
+/// The kind of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
     /// A request and a response of about 150 bytes.
@@ -19,24 +19,23 @@ pub enum Question {
     Large,
 }
 
-/// How the driver calls.
+/// The number of connections and calls of a driver.
 #[derive(Clone, Copy, Debug)]
 pub struct Scenario {
     /// Name on the command line.
     pub name: &'static str,
-    /// What is asked.
+    /// Kind of the calls.
     pub question: Question,
     /// Connections, each with its own callers.
     pub connections: usize,
     /// Calls in flight on each connection.
     pub in_flight: usize,
-    /// Both sides on the runtime with two workers and on any core, instead of one thread on a core
-    /// of its own.
+    /// Run both sides with two workers on any core, instead of one thread on one core each.
     pub multi_thread: bool,
-    /// Calls of a first round, which tells how many a counted one should have.
+    /// Calls of a first round, whose speed determines the number of calls in the measured rounds.
     pub first: usize,
-    /// Rounds for a report. Lone calls are faster or slower for seconds on end, by how deeply idle
-    /// cores sleep: many short rounds let every peer see both.
+    /// Rounds for a report. The speed of lone calls depends on how deeply idle cores sleep, and stays high or low for
+    /// seconds. Many short rounds give every peer both.
     pub rounds: usize,
 }
 
@@ -60,13 +59,13 @@ pub const SCENARIOS: &[Scenario] = &[
     Scenario { name: "lone-map", question: Question::Large, first: 40, ..ONE },
 ];
 
-/// A socket for a server.
+/// Binds the socket of a server to a free port.
 pub async fn listen() -> (SocketAddr, TcpListener) {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("bind");
     (listener.local_addr().expect("address"), listener)
 }
 
-/// 1 MiB of base64 text.
+/// Returns 1 MiB of base64 text.
 pub fn map_text() -> String {
     use base64::Engine as _;
     base64::engine::general_purpose::STANDARD.encode(messages::picture(messages::PICTURE))
@@ -78,8 +77,9 @@ pub struct Measured {
     pub wall: Duration,
 }
 
-/// Makes the scenario's calls: `connect` opens a connection, `call` makes one call on it; `ready` is
-/// told when all connections stand.
+/// Makes the calls of a scenario.
+///
+/// `connect` opens a connection, and `call` makes one call on it. `drive` calls `ready` when all connections are open.
 pub async fn drive<C, Connect, Connecting, Call, Calling>(
     address: SocketAddr,
     scenario: Scenario,

@@ -1,6 +1,7 @@
-//! Floors: the same bytes without a protocol. `raw` answers all that arrived in one write and the
-//! driver waits for its own bytes; `raw-mux` shares a connection between callers by a task, a
-//! channel and a oneshot per call.
+//! Floors: the same number of bytes without a protocol.
+//!
+//! The server answers all requests of one read with one write. The driver of `raw` waits for its own bytes. The driver
+//! of `raw-mux` shares a connection between callers, with two tasks, channels, and a oneshot per call.
 
 use super::peer::{Question, Serving, listen};
 use std::collections::VecDeque;
@@ -10,11 +11,11 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Mutex, mpsc, oneshot};
 
-/// Bytes of a request frame, as the FC peer sends them.
+/// Length of a request frame of fc, in bytes.
 const REQUEST: usize = 100;
-/// Bytes of a small answer frame.
+/// Length of a small response frame, in bytes.
 const SMALL: usize = 190;
-/// Bytes of a large one.
+/// Length of a large response frame, in bytes.
 const LARGE: usize = 1024 * 1024 + 250;
 
 pub async fn serve() -> Serving {
@@ -22,7 +23,7 @@ pub async fn serve() -> Serving {
     (address, Box::pin(answer(listener)))
 }
 
-/// A request's first byte says which answer it wants.
+/// Answers requests. The first byte of a request selects a small or a large response.
 async fn answer(listener: TcpListener) {
     let large = Arc::new(vec![7_u8; LARGE]);
     loop {
@@ -67,7 +68,7 @@ fn sizes(question: Question) -> (u8, usize) {
 
 type Waiting = (Question, oneshot::Sender<usize>);
 
-/// A connection shared by callers.
+/// A connection that several callers share.
 #[derive(Clone)]
 pub struct Mux(mpsc::UnboundedSender<Waiting>);
 
@@ -127,8 +128,9 @@ impl Mux {
     }
 }
 
-/// A connection whose one caller at a time writes and reads itself; with several in flight it sends
-/// them in one write and reads their answers together.
+/// A connection for one caller at a time, without other tasks.
+///
+/// Several requests in flight go out in one write, and the caller waits for all responses.
 #[derive(Clone)]
 pub struct Plain(Arc<Mutex<(TcpStream, Vec<u8>)>>);
 

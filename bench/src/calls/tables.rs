@@ -1,22 +1,22 @@
-//! Calls as tables and targets.
+//! The tables and targets of the calls.
 
 use super::peer::Scenario;
 use crate::report::{Table, Target, Text, digits, median, ratio, t, thousands};
 
-/// One round of one peer.
+/// The figures of one round of a peer.
 #[derive(Clone, Copy, Default)]
 pub struct Round {
     /// Calls per second.
     pub per_second: f64,
-    /// Microseconds.
+    /// Median latency, in microseconds.
     pub p50: f64,
-    /// Microseconds.
+    /// 99th percentile of the latency, in microseconds.
     pub p99: f64,
-    /// Microseconds of both processes per call.
+    /// CPU time of both processes per call, in microseconds.
     pub cpu: f64,
-    /// Per call.
+    /// Allocations of the client per call.
     pub client_allocations: f64,
-    /// Per call.
+    /// Allocations of the server per call.
     pub server_allocations: f64,
 }
 
@@ -30,7 +30,7 @@ struct Peer {
 }
 
 impl Peers {
-    /// None yet.
+    /// Creates peers without rounds.
     pub fn new(names: &[&'static str]) -> Self {
         Self(names.iter().map(|name| Peer { name, rounds: Vec::new(), counted: None }).collect())
     }
@@ -43,12 +43,12 @@ impl Peers {
         self.0.iter_mut().find(|peer| peer.name == name).expect("a peer")
     }
 
-    /// A round that counts.
+    /// Adds a measured round.
     pub fn add(&mut self, name: &str, round: Round) {
         self.get_mut(name).rounds.push(round);
     }
 
-    /// A round of the twin, for its allocations alone.
+    /// Sets the round of the twin. Only its allocations are used.
     pub fn count(&mut self, name: &str, round: Round) {
         self.get_mut(name).counted = Some(round);
     }
@@ -81,7 +81,7 @@ fn title(scenario: Scenario) -> Text {
     }
 }
 
-/// A scenario.
+/// Returns the table of a scenario.
 pub fn table(scenario: Scenario, peers: &Peers) -> Table {
     let columns = vec![
         "".into(),
@@ -106,7 +106,7 @@ pub fn table(scenario: Scenario, peers: &Peers) -> Table {
         let counted = peer.counted.map_or("–".to_owned(), |round| {
             format!("{:.1} + {:.1}", round.client_allocations, round.server_allocations)
         });
-        // The latency of `raw` is that of a whole window where there is one.
+        // With several calls in flight, the latency of `raw` is that of a whole window, so the table omits it.
         let window = peer.name == "raw" && scenario.in_flight > 1;
         let latency = |value: f64| if window { "–".into() } else { digits(value).into() };
         table.row(vec![
@@ -127,10 +127,10 @@ pub fn table(scenario: Scenario, peers: &Peers) -> Table {
     table
 }
 
-/// Allocations that are the values' own: the name and the result text of an answer, on either side.
+/// Allocations of the values of a response on each side: the name and the result text.
 const OWN: f64 = 2.0;
 
-/// T5 to T11.
+/// Returns the targets T5 to T11 and T16.
 #[allow(clippy::too_many_lines, reason = "a table")]
 pub fn targets(measured: &[(Scenario, Peers)]) -> Vec<Target> {
     let find = |name: &str| &measured.iter().find(|(scenario, _)| scenario.name == name).expect("a scenario").1;

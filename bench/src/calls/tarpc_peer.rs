@@ -1,4 +1,4 @@
-//! Peers: tarpc over bincode and over JSON.
+//! Peers `tarpc-bincode` and `tarpc-json`.
 
 use super::peer::{Question, Serving, listen, map_text};
 use fc_bench_cases::messages::{RESULT_CODE, RESULT_TEXT, STATION, STATION_NAME, TIME};
@@ -70,7 +70,7 @@ impl Robot for Answers {
     }
 }
 
-/// Which format.
+/// Format of the messages.
 #[derive(Clone, Copy)]
 pub enum Format {
     Bincode,

@@ -1,4 +1,4 @@
-//! Allocations per frame, counted by the twin.
+//! Allocations per frame, which the twin counts.
 
 use super::frames::{GZIP, encoded, read};
 use crate::report::{Table, Text, t};
@@ -9,10 +9,10 @@ use fc_runtime::{Decoder, Encoder, FrameId, Gzip, Message};
 use std::hint::black_box;
 use std::process::Command;
 
-/// Frames that are counted, after some that let buffers grow.
+/// Number of counted frames. As many frames before them let the buffers grow.
 const FRAMES: usize = 16;
 
-/// What is decoded and encoded.
+/// Names of the messages that the twin prints.
 const NAMES: &[&str] = &["small", "medium", "medium_text", "large", "small gzip", "medium gzip"];
 
 fn count(mut work: impl FnMut()) -> Allocations {
@@ -27,7 +27,8 @@ fn count(mut work: impl FnMut()) -> Allocations {
     Allocations { new: (after.new - before.new) / FRAMES, resized: (after.resized - before.resized) / FRAMES }
 }
 
-/// In the twin: a line per message with the counts of its values, of decoding and of encoding.
+/// Prints a line for each message, with the allocations of its values, of decoding and of encoding. Only the twin
+/// counts them.
 pub fn print() {
     let station = messages::station_id();
     let small = messages::small(messages::STATION);
@@ -60,7 +61,7 @@ fn print_one<M: Message + Clone>(name: &str, gzip: Option<Gzip>, id: FrameId, me
     println!("{name}: {counts}");
 }
 
-/// Runs the twin: the table, and the most that any frame allocates besides its values.
+/// Runs the twin. Returns the table, and the most allocations of a frame in addition to those of its values.
 pub fn table() -> (Table, f64) {
     let output = Command::new(twin::program()).arg("codec-allocations").output().expect("the twin runs");
     let text = String::from_utf8_lossy(&output.stdout);

@@ -1,10 +1,10 @@
-//! Peer for the cost per byte on the wire: MAVLink 2, whose messages are packed structs.
+//! MAVLink 2, the peer for the cost per byte on the wire. Its messages are packed structs.
 
 use mavlink::dialects::common::{MavMessage, ODOMETRY_DATA};
 use mavlink::{MavHeader, MavlinkReader, MavlinkVersion, write_v2_msg};
 use std::io::Read;
 
-/// A message with a body of about the size of a small frame.
+/// Returns a message about as long as a small frame.
 pub fn message() -> MavMessage {
     let mut data = ODOMETRY_DATA { time_usec: 1_667_823_500_544, x: 0.5, y: 0.6, z: 0.2, ..ODOMETRY_DATA::default() };
     for (index, value) in data.pose_covariance.iter_mut().chain(&mut data.velocity_covariance).enumerate() {
@@ -13,19 +13,19 @@ pub fn message() -> MavMessage {
     MavMessage::ODOMETRY(data)
 }
 
-/// Writes it behind what `out` holds.
+/// Appends a message to `out`.
 pub fn write(message: &MavMessage, out: &mut Vec<u8>) {
     write_v2_msg(out, MavHeader::default(), message).expect("a message can be written");
 }
 
-/// Some bytes over and over.
+/// A reader that repeats its bytes endlessly.
 pub struct Endless {
     bytes: Vec<u8>,
     at: usize,
 }
 
 impl Endless {
-    /// Repeats `bytes`.
+    /// Creates a reader that repeats `bytes`.
     pub fn new(bytes: Vec<u8>) -> Self {
         Self { bytes, at: 0 }
     }

@@ -1,4 +1,4 @@
-//! Frames to typed messages and back, on one thread.
+//! Measures the codec on one thread: frames to typed messages and back.
 
 mod allocations;
 mod frames;
@@ -17,13 +17,13 @@ use frames::{GZIP, encoded, read};
 use reference::Reference;
 use std::hint::black_box;
 
-/// Length of the header.
+/// Length of a frame header, in bytes.
 const HEADER: usize = 35;
 
-/// Seconds of both sides for one message.
+/// Seconds of the floor and of fc for one message.
 struct Pair {
     name: Text,
-    /// Bytes of the frame.
+    /// Length of the frame, in bytes.
     bytes: usize,
     reference: f64,
     ours: f64,
@@ -35,7 +35,7 @@ impl Pair {
     }
 }
 
-/// One message in all four ways.
+/// The four measurements of one message.
 struct Measured {
     decode: Pair,
     encode: Pair,
@@ -133,7 +133,7 @@ fn table(title: Text, pairs: &[(&Pair, Text)]) -> Table {
     table
 }
 
-/// Nanoseconds per byte of MAVLink's ODOMETRY: parsing and serializing, and its length.
+/// Returns the seconds to parse and to serialize a MAVLink ODOMETRY message, and its length in bytes.
 fn mavlink(effort: Effort) -> (f64, f64, usize) {
     let message = mavlink::message();
     let mut one = Vec::new();
@@ -157,7 +157,7 @@ fn mavlink(effort: Effort) -> (f64, f64, usize) {
     (seconds[0], seconds[1], length)
 }
 
-/// Throughput per byte on the wire beside MAVLink.
+/// Compares the throughput per byte on the wire with MAVLink.
 fn per_byte(small: &Measured, effort: Effort) -> (Table, Vec<Target>) {
     let (parse, serialize, length) = mavlink(effort);
     let rate = |bytes: usize, seconds: f64| bytes as f64 / seconds / 1e6;
@@ -206,7 +206,7 @@ fn per_byte(small: &Measured, effort: Effort) -> (Table, Vec<Target>) {
     (table, targets)
 }
 
-/// The group.
+/// Measures this group and returns its section.
 pub fn section(quick: bool) -> Section {
     let effort = Effort::of(quick);
     let station = messages::station_id();
@@ -229,7 +229,7 @@ pub fn section(quick: bool) -> Section {
     let all = [&small, &medium, &text, &large, &kept];
     let rows = |plain: fn(&Measured) -> &Pair, packed: fn(&Measured) -> &Pair| {
         let plain = all.iter().map(move |one| (plain(one), t("不压缩", "plain")));
-        // The compressed large body says the same twice.
+        // The last case has no compressed rows, because they would repeat those of the large message.
         plain.chain(all[..4].iter().map(move |one| (packed(one), "gzip".into()))).collect::<Vec<_>>()
     };
     let decode =

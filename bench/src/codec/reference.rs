@@ -1,7 +1,7 @@
-//! The reference floor: `fast-md5` and `serde_json` on typed structs, and nothing around them.
+//! The floor of the codec: only `fast-md5` and `serde_json` on typed structs.
 //!
-//! It checks and writes the same bytes as the codec, but knows no stream, no limits, no unknown
-//! keys and no errors to speak of.
+//! The floor checks and writes the same bytes as the codec. It has no streams and no limits, drops unknown keys, and
+//! panics on errors.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -12,18 +12,18 @@ use serde::de::{DeserializeOwned, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
-/// Length of the header.
+/// Length of a frame header, in bytes.
 const HEADER: usize = 35;
-/// Where the digest stands in it.
+/// Position of the digest in the header.
 const DIGEST: std::ops::Range<usize> = 19..35;
-/// Bytes in front of and behind the deflated data of a gzip member.
+/// Lengths of the header and the trailer of a gzip member, in bytes.
 const WRAPPER: (usize, usize) = (10, 8);
 
-/// A message of ours as a struct for serde.
+/// A message of fc as a struct for serde.
 pub trait Reference: Serialize + DeserializeOwned {
-    /// The same message in the protocol's types.
+    /// Type of the message in fc.
     type Ours;
-    /// Takes over its values.
+    /// Converts a message of fc.
     fn of(ours: &Self::Ours) -> Self;
 }
 
@@ -76,7 +76,7 @@ enum Position {
     Inside,
 }
 
-/// The envelope's fields and those of the body.
+/// Creates a message from the given fields of the body and the fixed fields of the envelope.
 macro_rules! enveloped {
     ($name:ident { $($field:ident : $value:expr),* $(,)? }) => {
         $name {
@@ -174,20 +174,20 @@ impl Reference for LargeText {
 }
 
 impl Small {
-    /// Something of what was read.
+    /// Returns the length of the station's name, which shows that the message was read.
     pub fn name_length(&self) -> usize {
         self.data.station_name.len()
     }
 }
 
 impl Large {
-    /// Something of what was read.
+    /// Returns the length of the picture, which shows that the message was read.
     pub fn picture_length(&self) -> usize {
         self.png_map_bytes.len()
     }
 }
 
-/// Reads a string and makes something of it, without keeping it.
+/// A visitor that converts a string without copying it.
 struct Parsed<T>(&'static str, fn(&str) -> Option<T>);
 
 impl<T> Visitor<'_> for Parsed<T> {
@@ -202,7 +202,7 @@ impl<T> Visitor<'_> for Parsed<T> {
     }
 }
 
-/// A float in a string.
+/// Reads and writes a float as a string.
 mod quoted {
     use super::{Deserializer, Parsed, Serializer};
 
@@ -216,7 +216,7 @@ mod quoted {
     }
 }
 
-/// Bytes as base64.
+/// Reads and writes bytes as base64.
 mod base64_text {
     use super::{Deserializer, Parsed, STANDARD, Serializer};
     use base64::Engine as _;
@@ -230,14 +230,14 @@ mod base64_text {
     }
 }
 
-/// Checks the digest of a frame and gives its body.
+/// Checks the digest of a frame and returns the body.
 fn checked(frame: &[u8]) -> &[u8] {
     let body = &frame[HEADER..];
     assert!(fast_md5::digest(body) == frame[DIGEST], "the digest is wrong");
     body
 }
 
-/// Reads a plain frame.
+/// Reads an uncompressed frame.
 pub fn decode<T: Reference>(frame: &[u8]) -> T {
     parse(checked(frame))
 }
@@ -246,7 +246,7 @@ fn parse<T: Reference>(body: &[u8]) -> T {
     serde_json::from_slice(body).expect("the reference reads it")
 }
 
-/// Writes a plain frame.
+/// Writes an uncompressed frame.
 pub fn encode<T: Reference>(value: &T, out: &mut Vec<u8>) {
     out.clear();
     out.resize(HEADER, 0);
@@ -261,7 +261,7 @@ fn seal(out: &mut [u8]) {
     out[DIGEST].copy_from_slice(&digest);
 }
 
-/// Reads and writes compressed frames, and keeps its state in between.
+/// Reads and writes compressed frames. The state of zlib is reused.
 pub struct Gzip {
     inflate: Decompress,
     deflate: Compress,
@@ -269,13 +269,13 @@ pub struct Gzip {
 }
 
 impl Gzip {
-    /// `level` as zlib's.
+    /// Creates the state for a compression level of zlib.
     pub fn new(level: u8) -> Self {
         let deflate = Compress::new(Compression::new(level.into()), false);
         Self { inflate: Decompress::new(false), deflate, plain: Vec::new() }
     }
 
-    /// Reads a compressed frame whose body is `plain` bytes long.
+    /// Reads a compressed frame whose inflated body has `plain` bytes.
     pub fn decode<T: Reference>(&mut self, frame: &[u8], plain: usize) -> T {
         let body = checked(frame);
         let (deflated, trailer) = body[WRAPPER.0..].split_at(body.len() - WRAPPER.0 - WRAPPER.1);

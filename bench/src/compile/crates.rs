@@ -1,4 +1,4 @@
-//! Temporary crates with the same messages, ours and prost's.
+//! Temporary crates with the same messages for fc and for prost.
 
 use fc_bench_cases::synthetic;
 use fc_codegen::emit::generate;
@@ -12,24 +12,24 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Instant, SystemTime};
 
-/// What a crate is made of.
+/// Contents of a crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Types, and reading and writing all of them by code.
+    /// Types of fc, and a function that reads and writes each of them by its code.
     Fc,
-    /// The same with client and server.
+    /// The same as [`Fc`](Self::Fc), with client and server.
     FcTokio,
-    /// Types, and reading and writing all of them by code.
+    /// Types of prost, and a function that reads and writes each of them by its code.
     Prost,
 }
 
-/// A crate on the disk.
+/// A crate on disk.
 pub struct Crate {
     root: PathBuf,
     kind: Kind,
 }
 
-/// What is asked of cargo.
+/// A command of cargo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// `cargo check`.
@@ -44,7 +44,7 @@ const OURS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const LOCK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.lock");
 
 impl Crate {
-    /// Makes a crate for so many commands in `root`.
+    /// Writes a crate for this number of commands to `root`.
     pub fn new(root: PathBuf, kind: Kind, commands: usize) -> Self {
         fs::create_dir_all(root.join("src")).expect("a directory");
         let made = Self { root, kind };
@@ -121,13 +121,13 @@ impl Crate {
         self.root.join("target")
     }
 
-    /// Forgets all that was built.
+    /// Removes all build results.
     pub fn clean(&self) {
         let _ = fs::remove_dir_all(self.target());
     }
 
-    /// Seconds of an action on the library, which is taken to have changed, and on whatever it
-    /// lacks.
+    /// Marks the library as changed, runs an action on it, and returns the seconds. They include dependencies that are
+    /// not built yet.
     pub fn act(&self, action: Action) -> f64 {
         let library = fs::File::options().append(true).open(self.root.join("src/lib.rs")).expect("the library");
         library.set_modified(SystemTime::now()).expect("a time");
@@ -138,14 +138,14 @@ impl Crate {
         }
     }
 
-    /// Bytes of the stripped release program.
+    /// Builds the stripped release program and returns its size in bytes.
     pub fn program_size(&self) -> f64 {
         self.cargo(&["build", "--release", "--bin", "generated", "--config", "profile.release.strip=true"]);
         let program = self.target().join("release/generated");
         fs::metadata(program).expect("the program").len() as f64
     }
 
-    /// Crates below it, itself not counted.
+    /// Returns the number of direct and indirect dependencies.
     pub fn dependencies(&self) -> usize {
         let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
         let output = Command::new(cargo)
@@ -165,7 +165,7 @@ fn manifest(dependencies: &str) -> String {
     )
 }
 
-/// Reads and writes whatever comes in as every message.
+/// A program that reads and writes its argument as every message.
 const MAIN: &str = "\
 fn main() {
     let input = std::env::args().nth(1).unwrap_or_default();
@@ -186,7 +186,7 @@ fn main() {
 }
 ";
 
-/// A robot that answers all, and an app that calls all.
+/// A program with a robot that answers all commands and an app that calls all of them.
 const TOKIO_MAIN: &str = "\
 use fc_runtime::{ClientConfig, Message as _, Server, ServerConfig};
 use generated::{Client, ExampleRobot, RobotService, for_each_command};

@@ -1,11 +1,11 @@
-//! What the generated code costs its users: time to compile, and bytes of the program.
+//! Measures the cost of the generated code for its users: compile time and program size.
 
 mod crates;
 
 use crate::report::{Section, Table, Target, Text, digits, median, ratio, seconds, t};
 use crates::{Action, Crate, Kind};
 
-/// Commands of the crate: twice as many messages.
+/// Number of commands in a crate. Each command has two messages.
 const COMMANDS: usize = 30;
 /// Kinds in the order of the report.
 const KINDS: &[Kind] = &[Kind::Fc, Kind::FcTokio, Kind::Prost];
@@ -18,7 +18,7 @@ fn name(kind: Kind) -> Text {
     }
 }
 
-/// Seconds of each action.
+/// The seconds of each action, over all rounds.
 #[derive(Default)]
 struct Times {
     cold: Vec<f64>,
@@ -63,7 +63,7 @@ fn measure(crates: &[Crate], quick: bool) -> Vec<Times> {
     times
 }
 
-/// Bytes per command, from programs with so many and with twice as many.
+/// Returns the table of sizes. The size per command comes from programs with [`COMMANDS`] and twice as many commands.
 fn sizes(root: &std::path::Path, crates: &[Crate]) -> Table {
     let columns = vec![
         "".into(),
@@ -83,7 +83,7 @@ fn sizes(root: &std::path::Path, crates: &[Crate]) -> Table {
     table
 }
 
-/// The group.
+/// Measures this group and returns its section.
 pub fn section(quick: bool) -> Section {
     let root = tempfile::tempdir().expect("a directory");
     let crates: Vec<Crate> =

@@ -1,4 +1,4 @@
-//! The app's process: the other end.
+//! The process of the app, which receives or sends chunks.
 
 use super::{CODE, Direction, Kind, Load, Seconds, plain};
 use crate::calls::{fc, runtime};
@@ -10,9 +10,10 @@ use std::net::SocketAddr;
 use tokio::io::duplex;
 use tokio::net::TcpStream;
 
-/// `data-drive KIND ADDRESS DIRECTION CHUNK COUNT RATE`: prints a line when the first bytes have come,
-/// if it receives; then the receiver's seconds (0 when it sends), CPU seconds and the most memory in
-/// MiB.
+/// Runs `data-drive KIND ADDRESS DIRECTION CHUNK COUNT RATE`.
+///
+/// A receiving app prints a line when the first bytes arrive. At the end, the app prints the seconds of receiving (0 if
+/// it sends), CPU seconds, and the peak memory in MiB.
 pub fn drive(kind: Kind, address: SocketAddr, load: Load) {
     runtime(false).block_on(async {
         let (seconds, cpu) = match kind {
@@ -25,7 +26,7 @@ pub fn drive(kind: Kind, address: SocketAddr, load: Load) {
 
 async fn ours(address: SocketAddr, load: Load) -> (Seconds, Seconds) {
     let config = fc::config(address).data_port(address.port());
-    // The robot's commands have no part in it.
+    // This measurement makes no calls, so the command connection has no robot at its other end.
     let (commands, _robot) = duplex(64);
     let app = Connection::<Fc>::over(commands, config);
     let connection = app.data();

@@ -1,4 +1,4 @@
-//! The data port: how fast it is, what it does to commands, what memory it takes.
+//! Measures the data port: its throughput, its effect on commands, and its memory.
 
 mod app;
 mod plain;
@@ -13,26 +13,26 @@ use std::path::Path;
 
 type Seconds = f64;
 
-/// Command code of the chunks.
+/// Code in the frames of chunks.
 const CODE: u16 = 1;
-/// Bytes of one second of a gigabit link.
+/// Payload of a gigabit link, in bytes per second.
 const GIGABIT: f64 = 118e6;
 
-/// What moves the chunks.
+/// Transport of the chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A socket and nothing else.
+    /// A plain socket.
     Tcp,
-    /// The same with a digest made on one side and checked on the other.
+    /// A plain socket, with a digest that the sender computes and the receiver checks.
     TcpMd5,
-    /// The data port.
+    /// The data port of fc.
     Fc,
 }
 
 const KINDS: &[(Kind, &str)] = &[(Kind::Tcp, "tcp"), (Kind::TcpMd5, "tcp + MD5"), (Kind::Fc, "fc")];
 
 impl Kind {
-    /// From the command line.
+    /// Returns the kind with this name on the command line.
     pub fn named(name: &str) -> Self {
         KINDS.iter().find(|(_, known)| *known == name).expect("a kind").0
     }
@@ -42,18 +42,18 @@ impl Kind {
     }
 }
 
-/// Which way.
+/// Direction of the chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// Robot to app.
     Down,
     /// App to robot.
     Up,
-    /// Nothing is sent.
+    /// No chunks.
     Idle,
 }
 
-/// What is sent.
+/// The chunks that a process sends or receives.
 #[derive(Clone, Copy, Debug)]
 pub struct Load {
     direction: Direction,
@@ -63,7 +63,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// From the command line.
+    /// Parses a load from the command line.
     pub fn parse(words: &[&str]) -> Self {
         let number = |at: usize| words.get(at).and_then(|word| word.parse::<usize>().ok()).unwrap_or(0);
         let direction = match words.first() {
@@ -94,10 +94,10 @@ fn digested(data: &[u8]) -> [u8; 16] {
     fast_md5::digest(data)
 }
 
-/// One transfer.
+/// The figures of one transfer.
 #[derive(Clone, Copy)]
 struct Transfer {
-    /// MB/s.
+    /// Throughput, in MB/s.
     rate: f64,
     /// CPU seconds of both sides per GB.
     cpu: f64,
@@ -105,7 +105,7 @@ struct Transfer {
     app_memory: f64,
 }
 
-/// The robot's process and its addresses.
+/// Starts a robot. Returns its process and the addresses of its command port and data port.
 fn start_robot(
     program: &Path,
     kind: Kind,
@@ -203,20 +203,20 @@ fn throughput(program: &Path, quick: bool) -> (Table, Vec<Target>) {
     (table, targets)
 }
 
-/// What runs while calls are made.
+/// The load during the calls, and the threads of the robot.
 #[derive(Clone, Copy)]
 struct Busy {
     load: Option<(Kind, Option<f64>)>,
-    /// Whether the robot has two workers, or one thread for everything.
+    /// `true` for a robot with two workers, `false` for one with a single thread.
     workers: bool,
 }
 
-/// Microseconds of a call, p50 and p99, while a load runs.
+/// Returns the latency of calls during a load, p50 and p99 in microseconds.
 fn latency(program: &Path, busy: Busy, calls: usize) -> [f64; 2] {
     let load = busy.load;
     let idle = Load { direction: Direction::Idle, chunk: 0, count: 0, bytes_per_second: None };
     let of = |rate| Load { direction: Direction::Down, chunk: 1 << 20, count: usize::MAX, bytes_per_second: rate };
-    // Our own data port belongs to the robot that is called; a plain load has processes of its own.
+    // The data port of fc belongs to the robot that receives the calls. A plain load has separate processes.
     let own = load.filter(|(kind, _)| *kind == Kind::Fc).map_or(idle, |(_, rate)| of(rate));
     let (_robot, commands, data) = start_robot(program, Kind::Fc, busy.workers, own, None);
     let mut others = Vec::new();
@@ -298,7 +298,7 @@ fn memory(program: &Path, quick: bool) -> (Table, Target) {
     let title = t("内存：机器人 → app，每帧 1 MiB", "Memory: robot → app in frames of 1 MiB");
     let mut table = Table::new(title, columns);
     let mut peaks = Vec::new();
-    // How full the queues get is chance: the most of several short runs is what they can hold.
+    // The fill of the queues varies by chance. The highest peak of several short runs shows their capacity.
     for (runs, count) in [(5, 1024), (1, if quick { 2048 } else { 8192 })] {
         let load = Load { direction: Direction::Down, chunk: 1 << 20, count, bytes_per_second: None };
         let runs: Vec<Transfer> = (0..runs).map(|_| transfer(program, Kind::Fc, load)).collect();
@@ -312,7 +312,7 @@ fn memory(program: &Path, quick: bool) -> (Table, Target) {
     (table, Target::at_most("D3", what, 1.1, 1.02, peaks[1] / peaks[0]))
 }
 
-/// The group.
+/// Measures this group and returns its section.
 pub fn section(quick: bool) -> Section {
     let program = std::env::current_exe().expect("own path");
     let (throughput, mut targets) = throughput(&program, quick);

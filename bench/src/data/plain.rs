@@ -1,4 +1,4 @@
-//! What moves the chunks over a plain socket, on either side.
+//! Sends and receives chunks over a plain socket.
 
 use super::{Direction, Load, Seconds, digested};
 use fc_bench_cases::messages::picture;
@@ -6,10 +6,10 @@ use std::time::Instant;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 
-/// Bytes of the digest in front of a chunk.
+/// Length of the digest before a chunk, in bytes.
 const DIGEST: usize = 16;
 
-/// Sends chunks as they are, or each behind its digest.
+/// Sends chunks, each after its digest if `md5` is set. Returns 0, because only a receiver measures seconds.
 pub async fn send(stream: &mut TcpStream, md5: bool, load: Load) -> Seconds {
     let data = picture(load.chunk);
     for _ in 0..load.count {
@@ -27,7 +27,7 @@ pub async fn send(stream: &mut TcpStream, md5: bool, load: Load) -> Seconds {
     0.0
 }
 
-/// Receives chunks as they are, or checks each against its digest.
+/// Receives chunks, and checks their digests if `md5` is set. Returns the seconds since the first bytes.
 pub async fn receive(stream: &mut TcpStream, md5: bool, load: Load) -> Seconds {
     let mut first = None;
     let mut buffer = vec![0; if md5 { DIGEST + load.chunk } else { 256 * 1024 }];
@@ -53,7 +53,7 @@ pub async fn receive(stream: &mut TcpStream, md5: bool, load: Load) -> Seconds {
     first.map_or(0.0, |first: Instant| first.elapsed().as_secs_f64())
 }
 
-/// Now, and says so.
+/// Prints that bytes have arrived, and returns the current time.
 pub fn flowing() -> Instant {
     println!("flowing");
     Instant::now()

@@ -1,4 +1,4 @@
-//! The robot's process: sends or receives chunks over the data port, or over a plain socket.
+//! The process of the robot, which sends or receives chunks over the data port or a plain socket.
 
 use super::{CODE, Direction, Kind, Load, Seconds, plain};
 use crate::calls::{fc, runtime};
@@ -12,9 +12,10 @@ use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::time::{Instant, sleep, sleep_until};
 
-/// `data-serve KIND single|threads DIRECTION CHUNK COUNT RATE`: prints its addresses, waits for the
-/// app at the data port, moves the chunks, prints the receiver's seconds (0 when it sends), CPU
-/// seconds and the most memory in MiB.
+/// Runs `data-serve KIND single|threads DIRECTION CHUNK COUNT RATE`.
+///
+/// Prints its addresses, waits for the app at the data port, and sends or receives the chunks. Then prints the seconds
+/// of receiving (0 if it sends), CPU seconds, and the peak memory in MiB.
 pub fn serve(kind: Kind, multi_thread: bool, load: Load) {
     runtime(multi_thread).block_on(async {
         let done = match kind {
@@ -51,7 +52,7 @@ async fn ours(load: Load) -> (Seconds, Seconds) {
                 break;
             }
         }
-        // What is queued has still to be written.
+        // The queued chunks still have to be written.
         while handle.counters().stream_frames_out < load.count as u64 && !load.is_endless() {
             sleep(Duration::from_millis(1)).await;
         }
@@ -69,13 +70,13 @@ async fn ours(load: Load) -> (Seconds, Seconds) {
     (seconds, meter.cpu())
 }
 
-/// `false` once nobody is there.
+/// Sends a chunk to all apps. Returns `false` if no app is connected.
 async fn send(handle: &ServerHandle<Fc>, id: usize, data: &[u8]) -> bool {
     let id = u32::try_from(id).unwrap_or(u32::MAX);
     matches!(handle.send_stream(Audience::All, CODE, id, data).await, Ok(1..))
 }
 
-/// When the next chunk is due.
+/// The schedule of a load with a fixed rate.
 struct Pace {
     next: Instant,
     every: Duration,

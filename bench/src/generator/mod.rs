@@ -1,4 +1,4 @@
-//! The generator: the project's spec, and specs of any size beside prost.
+//! Measures the generator with the project's spec, and compares it with prost on synthetic specs.
 
 mod once;
 
@@ -10,9 +10,9 @@ use fc_bench_cases::synthetic;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Commands of the synthetic specs.
+/// Numbers of commands in the synthetic specs.
 const SIZES: &[usize] = &[60, 600, 6000];
-/// All products.
+/// Argument that selects all products.
 const ALL: &str = "all";
 
 fn run(program: &Path, arguments: &[&str]) -> Figures {
@@ -23,7 +23,7 @@ fn path(directory: &TempDir) -> &str {
     directory.path().to_str().expect("a plain path")
 }
 
-/// What a run has taken: its steps in seconds, and the most memory in MiB.
+/// The seconds of each step of a run, and its peak memory in MiB.
 struct Run {
     steps: Vec<f64>,
     memory: f64,
@@ -41,7 +41,7 @@ impl Run {
     }
 }
 
-/// Files below `root` that the last run has written.
+/// Removes the files that the last run has written below `root`.
 fn clean(root: &Path) {
     for entry in std::fs::read_dir(root).expect("a directory") {
         let path = entry.expect("an entry").path();
@@ -60,7 +60,7 @@ fn generated(program: &Path, root: &TempDir, products: &str) -> Run {
     Run::of(run(program, &["generate-once", path(root), products]), once::STEPS)
 }
 
-/// The project's own spec in a directory of its own.
+/// Copies the project's spec to a temporary directory.
 fn project() -> TempDir {
     let spec = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../spec"));
     let root = tempfile::tempdir().expect("a directory");
@@ -107,7 +107,7 @@ fn whole_spec(program: &Path, rounds: usize) -> Table {
     table
 }
 
-/// Medians at one size.
+/// Medians for one number of commands. Pairs are seconds and peak memory in MiB.
 struct Sized {
     commands: usize,
     read: f64,
@@ -128,7 +128,8 @@ fn sized(program: &Path, commands: usize, rounds: usize) -> Sized {
         rust.push(generated(program, &root, "rust"));
         peers.push(Run::of(run(program, &["generate-prost", path(&root)]), 1));
     }
-    // Half a gigabyte of files is written back for seconds after: not in the way of the others.
+    // The files of all products can take half a gigabyte. The system writes them to disk for seconds, so these runs
+    // come last and do not slow the others down.
     for _ in 0..rounds {
         all.push(generated(program, &root, ALL));
     }
@@ -167,14 +168,14 @@ fn sizes_table(sizes: &[Sized]) -> Table {
     table
 }
 
-/// The group.
+/// Measures this group and returns its section.
 pub fn section(quick: bool) -> Section {
     let program = std::env::current_exe().expect("own path");
     let whole = whole_spec(&program, if quick { 3 } else { 11 });
     let sizes: Vec<Sized> = SIZES
         .iter()
         .map(|&commands| {
-            // The shorter a run, the more it is disturbed by.
+            // Short runs vary more and need more rounds.
             let (short, long) = match commands {
                 ..600 => (5, 25),
                 600..6000 => (3, 9),

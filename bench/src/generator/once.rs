@@ -1,4 +1,4 @@
-//! One run of a generator, in a process of its own: its memory is measured as well.
+//! One run of a generator. It has a separate process, so that its peak memory can be measured.
 
 use super::ALL;
 use crate::cost::peak_memory;
@@ -11,11 +11,12 @@ use fc_spec::{load, syntax};
 use std::path::Path;
 use std::time::Instant;
 
-/// Names of the steps that [`ours`] prints the seconds of.
+/// Number of steps whose seconds [`ours`] prints.
 pub const STEPS: usize = 4;
 
-/// `generate-once ROOT PRODUCT`, or `all` of them: from `ROOT/spec` to files below `ROOT`. Prints the seconds of
-/// reading, of checking, of generating and of writing, and the most memory in MiB.
+/// Runs `generate-once ROOT PRODUCT`. Generates files below `ROOT` from `ROOT/spec`. `all` selects all products.
+///
+/// Prints the seconds of reading, checking, generating and writing, and the peak memory in MiB.
 pub fn ours(root: &str, products: &str) {
     let root = Path::new(root);
     let only = match products {
@@ -44,7 +45,7 @@ pub fn ours(root: &str, products: &str) {
     println!("{} {}", seconds.join(" "), peak_memory());
 }
 
-/// `generate-prost ROOT`: from `ROOT/synthetic.proto` to a file in `ROOT`. Prints seconds and memory.
+/// Runs `generate-prost ROOT`. Generates a file in `ROOT` from `ROOT/synthetic.proto`. Prints seconds and peak memory.
 pub fn prost(root: &str) {
     let start = Instant::now();
     let descriptors = protox::compile(["synthetic.proto"], [root]).expect("a sound file");
@@ -52,8 +53,7 @@ pub fn prost(root: &str) {
     println!("{} {}", start.elapsed().as_secs_f64(), peak_memory());
 }
 
-/// `read-once ROOT`: reads the files of `ROOT/spec` and does nothing with them. Prints seconds and
-/// memory.
+/// Runs `read-once ROOT`. Only reads the files of `ROOT/spec`. Prints seconds, peak memory, and the bytes read.
 pub fn read(root: &str) {
     let start = Instant::now();
     let mut bytes = 0;

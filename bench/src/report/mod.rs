@@ -1,4 +1,4 @@
-//! What the groups say, and the page that shows it.
+//! The sections of the groups, and the results page.
 
 mod page;
 

@@ -1,4 +1,4 @@
-//! The page of the documentation with the results.
+//! The results page of the documentation.
 
 use super::{Language, Section, Target, Text, packages, t, targets_table, without_targets};
 use crate::machine::Machine;
@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 const MARK: &str =
     "<!-- Written by `cargo run --release --manifest-path bench/Cargo.toml -- all --report`; do not edit. -->";
 
-/// The page with all results. The summary, `performance.md`, is written by hand.
+/// Returns the page with all results. The summary, `performance.md`, is written by hand.
 #[must_use]
 pub fn page(sections: &[Section], machine: &Machine, quick: bool, language: Language) -> String {
     let get = |text: Text| text.get(language).to_owned();

@@ -1,5 +1,6 @@
-//! The apps' process: connects all of them, says so, takes and acknowledges reports until its input
-//! ends, and prints CPU seconds.
+//! The process of the apps.
+//!
+//! It connects all apps, prints `ready`, and acknowledges reports until its input ends. Then it prints CPU seconds.
 
 use super::robot::{ACKNOWLEDGEMENT, REPORT};
 use crate::calls::{fc, runtime};
@@ -15,7 +16,7 @@ use tokio::net::TcpStream;
 /// The header of a frame.
 type Head = <Fc as Protocol>::Header;
 
-/// `reports-drive ROBOT ADDRESS APPS SLOW`.
+/// Runs `reports-drive ROBOT ADDRESS APPS SLOW`. The slow apps connect but never read.
 pub fn drive(robot: &str, address: SocketAddr, apps: usize, slow: usize) {
     let runtime = runtime(false);
     runtime.block_on(async {
@@ -47,8 +48,9 @@ pub fn drive(robot: &str, address: SocketAddr, apps: usize, slow: usize) {
     });
 }
 
-/// `reports-fetch ADDRESS`: asks for one large answer after another until the robot is gone, and throws
-/// them away unread: an app on another machine takes none of the robot's processors.
+/// Runs `reports-fetch ADDRESS`. Requests large responses, one after another, until the robot exits.
+///
+/// It discards the responses without parsing them, because an app on another machine would not use the robot's cores.
 pub fn fetch(address: SocketAddr) {
     runtime(false).block_on(async {
         let mut request = Vec::new();
@@ -58,7 +60,7 @@ pub fn fetch(address: SocketAddr) {
         encoder.message(&mut request, id, &envelope, &messages::map_request()).expect("it fits");
         let mut stream = TcpStream::connect(address).await.expect("connect");
         let mut answer = vec![0; 64 * 1024];
-        // Until the robot has done its part.
+        // The loop ends when the robot exits.
         while stream.write_all(&request).await.is_ok() && stream.read_exact(&mut answer[..Head::LEN]).await.is_ok() {
             let length = Head::peek_total_length(&answer).expect("a whole header");
             let mut rest = (&mut stream).take(u64::from(length) - Head::LEN as u64);
@@ -67,7 +69,7 @@ pub fn fetch(address: SocketAddr) {
     });
 }
 
-/// Answers every report with as many bytes as an acknowledgement has.
+/// Answers each report of the floor with the number of bytes of an acknowledgement.
 async fn acknowledge(mut stream: TcpStream) {
     let mut input = vec![0; 64 * 1024];
     let mut have = 0;

@@ -1,4 +1,4 @@
-//! One robot and many apps: reports that every app acknowledges.
+//! Measures reports from one robot to many apps. Every app acknowledges every report.
 
 mod apps;
 mod robot;
@@ -10,27 +10,27 @@ use crate::process::{Process, cores};
 use crate::report::{Section, Table, Target, Text, digits, median, ratio, t, thousands};
 use std::path::{Path, PathBuf};
 
-/// Who pushes: the floor, us, and us without the encoding that all apps share.
+/// The robots: the floor, fc, and fc with a separate encoding for each app.
 const ROBOTS: &[&str] = &["raw", "fc", "fc-each"];
-/// Apps at one robot.
+/// Numbers of apps at one robot.
 const APPS: &[usize] = &[1, 10, 100, 1000];
-/// Deliveries of a first round, which tells how many a counted one should have.
+/// Deliveries of a first round, whose speed determines the number of deliveries in the measured rounds.
 const FIRST: usize = 4_000;
-/// Apps beside the slow one.
+/// Number of fast apps in the measurement with a slow app.
 const FAST: usize = 10;
 
-/// One round.
+/// The figures of one round.
 #[derive(Clone, Copy)]
 struct Round {
     /// Acknowledged deliveries per second.
     per_second: f64,
-    /// Microseconds of the robot per delivery.
+    /// CPU time of the robot per delivery, in microseconds.
     robot: f64,
-    /// Microseconds of the apps per delivery.
+    /// CPU time of the apps per delivery, in microseconds.
     apps: f64,
 }
 
-/// Lets `robot` push so many reports to so many apps.
+/// Runs one round in which `robot` pushes `reports` reports to each of `apps` apps.
 fn round(program: &Path, robot: &str, apps: usize, reports: usize) -> Round {
     let (first, second) = cores();
     let mut server = Process::start(program, &["reports-serve", robot], first);
@@ -48,7 +48,7 @@ fn round(program: &Path, robot: &str, apps: usize, reports: usize) -> Round {
     }
 }
 
-/// Acknowledged deliveries per second of the fast apps, with so many slow ones beside them.
+/// Returns the acknowledged deliveries per second to the fast apps while `slow` slow apps are connected.
 fn beside(program: &Path, slow: usize, seconds: f64) -> f64 {
     let (first, second) = cores();
     let mut server = Process::start(program, &["reports-serve", "fc"], first);
@@ -62,8 +62,9 @@ fn beside(program: &Path, slow: usize, seconds: f64) -> f64 {
     figures[0] / figures[1]
 }
 
-/// Microseconds from a push to its acknowledgement, p50 and p99, while another app fetches one large
-/// answer after another, or does not.
+/// Returns the time from a push to its acknowledgement, p50 and p99 in microseconds.
+///
+/// If `large` is set, another app fetches large responses at the same time.
 fn timed(program: &Path, robot: &str, large: bool, reports: usize) -> [f64; 2] {
     let (first, second) = cores();
     let mut server = Process::start(program, &["reports-serve", robot], first);
@@ -191,7 +192,7 @@ fn beside_large(program: &Path, quick: bool) -> (Table, f64) {
     (table, of(1, 1) / of(0, 1))
 }
 
-/// The group.
+/// Measures this group and returns its section.
 pub fn section(quick: bool) -> Section {
     let program: PathBuf = std::env::current_exe().expect("own path");
     let measured: Vec<Measured> = APPS.iter().map(|apps| measure(&program, *apps, quick)).collect();
@@ -220,8 +221,8 @@ pub fn section(quick: bool) -> Section {
         ),
         tables: vec![table(&measured), slow_table, large_table],
         targets: vec![
-            // A report is the same exchange as a call, in the other direction: what T7 asks for beside
-            // raw-mux, which takes 1.33 times as much as raw.
+            // A report is the same exchange as a call, in the other direction. These are the bounds of T7, converted
+            // from raw-mux to raw: raw-mux takes 1.33 times as much CPU time as raw.
             Target::at_most(
                 "R1",
                 t("100 个 app，两端 CPU × raw（按 T7 折算）", "100 apps, CPU of both sides × raw (T7, converted)"),

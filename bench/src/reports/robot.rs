@@ -1,6 +1,7 @@
-//! The robot's process: `push APPS REPORTS` pushes in batches and prints seconds and CPU seconds;
-//! `paced FAST APPS SECONDS` pushes as fast as the fast apps acknowledge and prints deliveries and
-//! seconds.
+//! The process of the robot, which reads one order.
+//!
+//! `push APPS REPORTS` pushes in batches and prints seconds and CPU seconds. `paced FAST APPS SECONDS` pushes as fast
+//! as the fast apps acknowledge, and prints acknowledged deliveries and seconds.
 
 use crate::calls::fc::{self, Answers};
 use crate::calls::runtime;
@@ -18,15 +19,17 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Notify, mpsc};
 
-/// Reports on their way at a time.
+/// Largest number of reports without an acknowledgement, for each app.
 const BATCH: usize = 16;
-/// Bytes of a report's frame, as fc sends it.
+/// Length of a report frame of fc, in bytes.
 pub const REPORT: usize = 104;
-/// Bytes of an acknowledgement's frame.
+/// Length of an acknowledgement frame of fc, in bytes.
 pub const ACKNOWLEDGEMENT: usize = 105;
 
-/// `reports-serve ROBOT`. `timed` and `timed-prepared` take `REPORTS` for an order: they
-/// push one at a time to the first app and print p50 and p99 in microseconds.
+/// Runs `reports-serve ROBOT`.
+///
+/// The order of the robots `timed` and `timed-prepared` is a number of reports. They push one report at a time to the
+/// first app, and print p50 and p99 in microseconds.
 pub fn serve(robot: &str) {
     let runtime = runtime(false);
     runtime.block_on(async {
@@ -41,7 +44,7 @@ pub fn serve(robot: &str) {
     });
 }
 
-/// The words of the next line, read beside the runtime.
+/// Returns the words of the next input line. It reads on another thread, so that the runtime continues.
 async fn order() -> Vec<String> {
     let line = tokio::task::spawn_blocking(|| {
         let mut line = String::new();
@@ -67,7 +70,7 @@ async fn ours(each: bool) {
     }
 }
 
-/// Waits until so many apps are there.
+/// Waits until this number of apps is connected.
 async fn gathered(handle: &ServerHandle<Fc>, apps: usize) {
     while handle.connections().len() < apps {
         tokio::time::sleep(Duration::from_millis(1)).await;
@@ -98,8 +101,8 @@ async fn push(handle: &ServerHandle<Fc>, each: bool, apps: usize, reports: usize
     println!("{} {}", start.elapsed().as_secs_f64(), meter.cpu());
 }
 
-/// Nobody waits for a push here: the fast apps' acknowledgements set the pace, and the slow one's
-/// reports give way to newer ones.
+/// Pushes reports without waiting for each push. The acknowledgements of the fast apps set the pace. Newer reports
+/// replace those that wait for a slow app.
 async fn paced(handle: &ServerHandle<Fc>, fast: usize, apps: usize, seconds: f64) {
     gathered(handle, apps).await;
     let report = RechargeProgress::example();
@@ -118,8 +121,8 @@ async fn paced(handle: &ServerHandle<Fc>, fast: usize, apps: usize, seconds: f64
     println!("{acknowledged} {}", start.elapsed().as_secs_f64());
 }
 
-/// A report every millisecond or two, as a robot tells where it is; from the push to its
-/// acknowledgement by the first app, whatever others ask for meanwhile.
+/// Pushes a report every millisecond or two, like a robot that reports its position. Measures the time from each push
+/// to the acknowledgement by the first app.
 async fn timed(answers: Answers) {
     let server = fc::bind(fc::Robot::new(answers)).await;
     println!("{}", server.command_addr());
@@ -145,7 +148,7 @@ async fn timed(answers: Answers) {
     println!("{} {}", at(0.5), at(0.99));
 }
 
-/// One app of the floor.
+/// The queue of frames to one app of the floor.
 struct Listener {
     frames: mpsc::UnboundedSender<Arc<[u8]>>,
 }
@@ -189,7 +192,7 @@ async fn raw() {
     println!("{} {}", start.elapsed().as_secs_f64(), meter.cpu());
 }
 
-/// Writes what has gathered in one write, and counts what comes back.
+/// Writes all queued frames in one write, and counts the acknowledgements by their bytes.
 async fn attend(
     stream: TcpStream,
     mut outbox: mpsc::UnboundedReceiver<Arc<[u8]>>,

@@ -5,9 +5,9 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// How much more than the budget is let through, in percent, where the budget does not say.
+/// Default of `margin_percent`, the allowed excess over the budget in percent.
 const MARGIN: u64 = 10;
-/// What the budget is about.
+/// Directories whose changes affect the counts.
 const MEASURED: &[&str] = &["fc-runtime", "fc-derive", "fc-generated", "fc-codegen", "fc-spec", "spec"];
 
 fn root() -> PathBuf {
@@ -19,7 +19,7 @@ fn git(arguments: &[&str]) -> String {
     output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default()
 }
 
-/// The commit that is measured, and whether there are changes on top.
+/// Returns the measured commit, followed by `+changes` if the directories have uncommitted changes.
 fn commit() -> String {
     let hash = git(&["rev-parse", "--short", "HEAD"]);
     let mut status = vec!["status", "--porcelain", "--"];
@@ -27,7 +27,7 @@ fn commit() -> String {
     if git(&status).is_empty() { hash } else { format!("{hash}+changes") }
 }
 
-/// Instructions of `counted CASE TIMES`, start and end of the program included.
+/// Returns the instructions of `counted CASE TIMES`, including start and end of the program.
 fn collected(case: &str, times: usize) -> Result<u64, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
@@ -44,17 +44,18 @@ fn collected(case: &str, times: usize) -> Result<u64, String> {
     }
 }
 
-/// Instructions of one unit of a case.
+/// Returns the instructions of one unit of a case.
 fn count(case: &Case) -> Result<u64, String> {
     let (few, many) = if case.times == 1 { (0, 1) } else { (case.times, case.times * 2) };
     let more = collected(case.name, many)?.saturating_sub(collected(case.name, few)?);
     Ok(more / ((many - few) * case.units) as u64)
 }
 
-/// Counts, prints and compares. `Ok(false)` if a case is over its budget.
+/// Counts all cases, prints the counts, and compares them with the budget. Returns `false` if a case exceeds its budget
+/// by more than the margin.
 ///
 /// # Errors
-/// If something cannot be counted, read or written.
+/// If a case cannot be counted, or the budget cannot be read or written.
 pub fn run(accept: bool) -> Result<bool, String> {
     let path = root().join("bench/budget.json");
     let budget: Value = match std::fs::read_to_string(&path) {

@@ -1,7 +1,7 @@
 //! Work whose instructions are counted.
 //!
-//! - `counted CASE N` does a case `N` times; `valgrind --tool=callgrind` says what that costs.
-//! - `counted gate [--accept]` does so for all cases and compares with `bench/budget.json`.
+//! `counted CASE N` runs a case `N` times, so that `valgrind --tool=callgrind` can count its instructions.
+//! `counted gate [--accept]` does this for all cases and compares the counts with `bench/budget.json`.
 
 mod gate;
 mod work;

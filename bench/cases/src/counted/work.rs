@@ -1,4 +1,4 @@
-//! The cases.
+//! The cases whose instructions are counted.
 
 use fc_bench_cases::{messages, synthetic};
 use fc_codegen::emit;
@@ -16,20 +16,20 @@ use std::net::Ipv4Addr;
 use std::path::Path;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 
-/// A case, how often it is done to be counted, and how many things it does each time.
+/// A case: some work that is repeated and counted.
 pub struct Case {
-    /// Name, also in the budget.
+    /// Name on the command line and in the budget.
     pub name: &'static str,
-    /// What one of the things is.
+    /// Name of a unit.
     pub unit: &'static str,
-    /// How often: the count is the difference between so often and twice as often, or between
-    /// never and once.
+    /// Number of runs. The count is the difference between this number of runs and twice as many. If it is 1, the
+    /// count is the difference between no run and one.
     pub times: usize,
-    /// Things done each time.
+    /// Number of units in each run.
     pub units: usize,
 }
 
-/// Every case.
+/// All cases.
 pub const CASES: &[Case] = &[
     Case { name: "decode_small", unit: "frame", times: 2000, units: 1 },
     Case { name: "decode_medium", unit: "frame", times: 40, units: 1 },
@@ -40,21 +40,21 @@ pub const CASES: &[Case] = &[
     Case { name: "stubs", unit: "run over sixty commands", times: 1, units: 1 },
 ];
 
-/// Requests sent at a time.
+/// Requests in each run of `dispatch`.
 const DISPATCHED: usize = 100;
-/// Commands of the spec that is generated from. It is a synthetic one: what the owner adds to the project's
-/// spec, and how long its examples are, costs nobody a budget.
+/// Number of commands in the spec for the generator. The spec is synthetic, so that changes of the project's spec do
+/// not affect the budget.
 const GENERATED: usize = 60;
 
-/// What every project has.
+/// The products of every project.
 const PRODUCTS: [Product; 4] = [Product::Rust, Product::Markdown, Product::Vectors, Product::Schema];
 /// The packages of other languages.
 const STUBS: [Product; 4] = [Product::TypeScript, Product::Python, Product::Kotlin, Product::Cpp];
 
-/// Does a case so many times.
+/// Runs a case this number of times.
 ///
 /// # Errors
-/// If there is no such case, or it cannot be done.
+/// If the case does not exist or fails.
 pub fn run(case: &str, times: usize) -> Result<(), String> {
     match case {
         "decode_small" => decode(&messages::small(messages::STATION), times),
@@ -96,8 +96,9 @@ fn encode<M: Message>(message: &M, times: usize) {
     }
 }
 
-/// Requests through a server: framing, `match` on the code, typed reading, the handler, the answer. No sockets.
-/// All ask for a station, so that no other example of the spec is weighed.
+/// Sends requests through a server without sockets: framing, `match` on the code, typed reading, handler and response.
+///
+/// All requests ask for a station, so that the count does not depend on other examples of the spec.
 fn dispatch(times: usize) -> Result<(), String> {
     let runtime =
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(|error| error.to_string())?;
@@ -126,7 +127,7 @@ fn dispatch(times: usize) -> Result<(), String> {
     })
 }
 
-/// Frames that ask for a station.
+/// Returns frames with requests for a station.
 fn requests() -> Result<Vec<u8>, String> {
     let mut out = Vec::new();
     let mut encoder = Encoder::<Fc>::new();
@@ -138,7 +139,7 @@ fn requests() -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// A spec to products, in memory.
+/// Generates products from a synthetic spec without writing them.
 fn generate(products: &[Product], times: usize) -> Result<(), String> {
     let root = tempfile::tempdir().map_err(|error| error.to_string())?;
     synthetic::write_spec(root.path(), GENERATED).map_err(|error| error.to_string())?;

@@ -1,17 +1,17 @@
-//! Specs of any size: every command has a request and a response of eight fields.
+//! Synthetic specs of any size. Each command has a request and a response with eight fields.
 
 use std::fmt::Write as _;
 use std::io;
 use std::path::Path;
 
-/// Commands of one group, which is one file.
+/// Number of commands in a group. Each group is one file.
 const GROUP: usize = 60;
 /// Code of the first command.
 const FIRST_CODE: usize = 0x1000;
-/// Wire, envelope, results and ranges.
+/// The file with frame format, envelope, results and code ranges.
 const PROTOCOL: &str = include_str!("protocol.yaml");
 
-/// Fields of every message: wire key, type in the spec, type in protobuf, example, titles.
+/// Fields of every message: key on the wire, type in the spec, type in protobuf, example, English title.
 const FIELDS: &[[&str; 5]] = &[
     ["recordId", "i64", "int64", "1671124918008", "Id of the record"],
     ["recordName", "string", "string", "gate1", "Name of the record"],
@@ -23,7 +23,7 @@ const FIELDS: &[[&str; 5]] = &[
     ["levels", "[i32]", "repeated int32", "[1, 2, 3]", "Floors it belongs to"],
 ];
 
-/// Writes `spec/` with so many commands below `root`.
+/// Writes a spec with this number of commands to `root/spec`.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -58,7 +58,7 @@ fn group_of(group: usize, commands: std::ops::Range<usize>) -> String {
     out
 }
 
-/// The same messages in protobuf.
+/// Returns the same messages in protobuf.
 #[must_use]
 pub fn proto(commands: usize) -> String {
     let mut out = "syntax = \"proto3\";\npackage synthetic;\n".to_owned();

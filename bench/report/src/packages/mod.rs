@@ -1,4 +1,4 @@
-//! What the packages of other languages have measured of themselves: one file each, and a part of the page.
+//! The measurements of the packages of other languages: a file for each language, and a block in the results page.
 
 mod section;
 
@@ -9,90 +9,90 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What a package has measured of itself. Times are in microseconds.
+/// The measurements of a package. Times are in microseconds.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Report {
     /// Name of the language.
     pub language: String,
-    /// Day, as `YYYY-MM-DD`.
+    /// Date, as `YYYY-MM-DD`.
     pub date: String,
     /// Name of the processor.
     pub processor: String,
-    /// Cores that may be used.
+    /// Number of available cores.
     pub cores: usize,
-    /// Versions by name: of the language, and of what it is measured beside.
+    /// Versions of the language and of its peers, by name.
     pub versions: BTreeMap<String, String>,
-    /// What the floor of the codec reads and writes JSON with.
+    /// JSON library of the floor.
     pub json: String,
-    /// Which of the peers calls are compared with: gRPC, where it is measured.
+    /// Name of the peer for the comparison of calls. It is gRPC if the package measures gRPC.
     pub grpc: String,
-    /// What has to be reached.
+    /// Goals of the package.
     #[serde(default)]
     pub goals: Goals,
-    /// By message.
+    /// Figures of the codec for each message.
     pub codec: Vec<Codec>,
-    /// By calls in flight.
+    /// Figures of calls for each number of calls in flight.
     pub calls: Vec<Calls>,
 }
 
-/// What a package has to reach.
+/// The goals of a package.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Goals {
-    /// Most that small and medium messages take, as a multiple of the floor.
+    /// Longest time for small and medium messages, as a multiple of the floor.
     pub codec: Option<f64>,
-    /// Least calls per second with the most in flight, as a multiple of those of what it is compared with.
+    /// Least calls per second with the most calls in flight, as a multiple of those of the compared peer.
     pub calls: Option<f64>,
 }
 
-/// What a message costs.
+/// Figures of the codec for one message.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Codec {
-    /// `small`, `medium` or `long`: the file in `bench/frames`.
+    /// Name of the file in `bench/frames`: `small`, `medium` or `long`.
     pub message: String,
-    /// Bytes of its frame.
+    /// Length of the frame, in bytes.
     pub bytes: usize,
-    /// From a frame to a typed message.
+    /// Times from a frame to a typed message.
     pub decode: Beside,
-    /// From a typed message to a frame.
+    /// Times from a typed message to a frame.
     pub encode: Beside,
 }
 
-/// The package beside the floor.
+/// The times of the floor and of the package.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Beside {
-    /// JSON and MD5 alone.
+    /// Time of the floor, which is only JSON and MD5.
     pub least: f64,
-    /// The package.
+    /// Time of the package.
     pub fc: f64,
 }
 
-/// What calls cost with so many in flight.
+/// Figures of calls for one number of calls in flight.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calls {
-    /// How many.
+    /// Number of calls in flight.
     pub in_flight: usize,
-    /// The floor, the package, and what that is compared with.
+    /// The floor, the package, and the compared peer.
     pub peers: Vec<Peer>,
 }
 
-/// One of those that call.
+/// Figures of calls for one peer.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Peer {
-    /// Its name; `raw` is the floor, `fc` the package.
+    /// Name of the peer. `raw` is the floor, and `fc` is the package.
     pub name: String,
     /// Calls per second.
     pub rate: f64,
-    /// Time of the middle call; absent where calls go in one write.
+    /// Median latency. It is absent if several calls share a write.
     pub p50: Option<f64>,
-    /// Time of one of the slowest of a hundred.
+    /// 99th percentile of the latency. It is absent in the same case.
     pub p99: Option<f64>,
-    /// CPU of both processes for a call.
+    /// CPU time of both processes per call.
     pub cpu: f64,
 }
 
@@ -100,10 +100,10 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The reports that are there, by their names.
+/// Reads all reports in `bench/packages`, sorted by file name.
 ///
 /// # Errors
-/// If one cannot be read, or is no report.
+/// If a file cannot be read or is not a report.
 pub fn read() -> io::Result<Vec<Report>> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(root().join("bench/packages"))?
         .map(|entry| entry.map(|entry| entry.path()))
@@ -123,23 +123,23 @@ const BEGIN: &str =
     "<!-- Written by `cargo run --manifest-path bench/Cargo.toml -p fc-bench-report`; do not edit. -->\n\n";
 const END: &str = "<!-- Up to here. -->\n";
 
-/// Their part of the page, with the marks around it.
+/// Returns the block of the packages in the results page, between two marks.
 #[must_use]
 pub fn block(reports: &[Report], language: Language) -> String {
     format!("{BEGIN}{}{END}", whole(&section::section(reports), language))
 }
 
-/// A page with this part in place of the one that it has.
+/// Returns a page with its block of the packages replaced.
 ///
 /// # Errors
-/// If it has none.
+/// If the page has no such block.
 pub fn replaced(page: &str, block: &str) -> Result<String, String> {
     let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
     let (before, after) = parts.ok_or("the page has no part for the packages")?;
     Ok(format!("{before}{block}{after}"))
 }
 
-/// The pages in both languages.
+/// Returns the paths of the results pages in both languages.
 #[must_use]
 pub fn pages() -> [(PathBuf, Language); 2] {
     [("guides", Language::Chinese), ("en/guides", Language::English)]

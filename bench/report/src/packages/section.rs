@@ -1,9 +1,9 @@
-//! The tables.
+//! The section of the packages, with tables and targets.
 
 use super::{Calls, Codec, Peer, Report};
 use crate::{Section, Table, Target, Text, digits, ratio, seconds, t, thousands};
 
-/// One section for all languages.
+/// Returns one section for all languages.
 pub(super) fn section(reports: &[Report]) -> Section {
     let mut section = Section {
         title: t("其他语言的包", "Packages of other languages"),
@@ -148,7 +148,7 @@ fn table_of_calls(report: &Report, calls: &Calls) -> Table {
     table
 }
 
-/// What a package has to reach, and what more would be.
+/// Returns the targets of a package, from its goals.
 fn targets(report: &Report) -> Vec<Target> {
     let language = &report.language;
     let mut targets = Vec::new();
