@@ -1,14 +1,14 @@
-//! Is there a dead line in the spec?
+//! Finds lines of the spec that have no effect.
 //!
-//! Changes every scalar of every spec file, keys included, one at a time, in memory. Each change
-//! must either be refused by the checks or make at least one generated file stale; whatever can be
-//! changed without effect is listed, and the exit status is 1.
+//! Changes every scalar of every spec file in memory, keys included, one at a time. The checks must refuse each change,
+//! or at least one generated file must become stale. The program lists changes without effect and then exits with
+//! status 1.
 //!
 //! ```text
 //! cargo run --release --example mutate [PART/PARTS]
 //! ```
 //!
-//! That takes minutes; with `3/8` it is the third of eight parts, of which each takes every eighth scalar.
+//! A run takes minutes. `3/8` selects the third of eight parts, each with every eighth scalar.
 
 use fc_codegen::emit;
 use fc_codegen::product::Artifact;
@@ -24,7 +24,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// A scalar to change: file, byte range, and the text to put there.
+/// A scalar to change: file, byte range and replacement.
 struct Mutation {
     file: FileId,
     start: usize,
@@ -32,28 +32,29 @@ struct Mutation {
     text: String,
 }
 
-/// What came of a change.
+/// The outcome of a change.
 enum Outcome {
     Refused,
     Stale,
     Dead,
 }
 
-/// The products beside the pages.
+/// The products other than the pages.
 const PRODUCTS: [fn(&Model, &Targets) -> Vec<Artifact>; 2] =
     [emit::rust::emit, emit::vectors::emit];
 
-/// What is made of the spec as it is.
+/// The output for the unchanged spec.
 struct Baseline {
     trees: Trees,
     targets: Targets,
-    /// By their paths.
+    /// The pages by their paths.
     pages: HashMap<String, Artifact>,
     others: Vec<Vec<Artifact>>,
 }
 
 impl Baseline {
-    /// Whether anything else is made of a model. Pages come first, which notice most, and of them no more are made than it takes.
+    /// Returns `true` if the output for `model` differs from the baseline. Pages come first, because most changes show
+    /// there. It stops at the first page that differs.
     fn differs(&self, model: &Model) -> bool {
         let mut pages = 0;
         let are_same = emit::markdown::emit_while(model, &self.targets, |page| {
@@ -140,7 +141,7 @@ fn main() -> ExitCode {
         dead.len(),
         started.elapsed().as_secs()
     );
-    // A thread that died took its outcomes with it.
+    // If a thread panics, its outcomes are missing.
     if dead.is_empty() && outcomes.len() == mutations.len() {
         ExitCode::SUCCESS
     } else {
@@ -148,7 +149,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// `3/8` as numbers, of which the first counts from 1 to the second.
+/// Parses `3/8`. The first number counts from 1 to the second.
 fn part(text: &str) -> Option<(usize, usize)> {
     let (part, parts) = text.split_once('/')?;
     let (part, parts) = (part.parse().ok()?, parts.parse().ok()?);
@@ -201,7 +202,7 @@ fn collect(node: Node<'_>, file: FileId, source: &SourceFile, into: &mut Vec<Mut
             let written = source.text.get(start..end).unwrap_or_default();
             let text = match scalar.style {
                 Style::Plain | Style::Block => other(written),
-                // Inside the quotes.
+                // The quotes stay.
                 Style::Quoted => {
                     let quote = written.get(..1).unwrap_or_default();
                     let inside = 1..written.len().saturating_sub(1);
@@ -230,7 +231,7 @@ fn collect(node: Node<'_>, file: FileId, source: &SourceFile, into: &mut Vec<Mut
     }
 }
 
-/// The nearest other value: a number counts up, a truth value flips, a text grows by a letter.
+/// Returns the nearest other value: the next number, the opposite boolean, or the text with one more letter.
 fn other(text: &str) -> String {
     if let Some(digits) = text.strip_prefix("0x")
         && let Ok(number) = u64::from_str_radix(digits, 16)

@@ -1,9 +1,9 @@
-//! How long an editor waits beside a spec of 600 commands, as a ratio to one full check of the same spec in the same run:
-//! `cargo run --release -p fc-lsp --example latency -- SPEC`, where SPEC is the directory of a spec to which the commands
-//! are added, such as `fc-codegen/tests/docs/spec`.
+//! Measures how long an editor waits for responses on a spec of 600 commands. It prints each time also as a ratio to
+//! one full check of the same spec: `cargo run --release -p fc-lsp --example latency -- SPEC`. SPEC is the directory of
+//! a spec to which the commands are added, such as `fc-codegen/tests/docs/spec`.
 //!
-//! The client is another thread, so that a figure has in it what encoding and waking cost. Each is the median of
-//! several, and each question but the last comes right behind a change, before anything has been found out about it.
+//! The client runs in another thread, so each figure includes the cost of encoding and waking. Each figure is a median.
+//! Every question except the last follows a change directly, before the server has checked the new text.
 
 #![allow(
     clippy::expect_used,
@@ -25,10 +25,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Groups, and commands in each.
+/// The number of groups, and of commands in each.
 const GROUPS: usize = 20;
 const COMMANDS: usize = 30;
-/// Of which each figure is the median.
+/// The number of measurements per figure.
 const TIMES: usize = 21;
 
 fn main() {
@@ -110,7 +110,7 @@ fn median(mut once: impl FnMut() -> Duration) -> Duration {
     times[TIMES / 2]
 }
 
-/// Checks the spec as `fcproto check` does; the number of its operations.
+/// Checks the spec as `fcproto check` does and returns the number of its operations.
 fn checked(sources: &Sources) -> usize {
     let mut faults = Faults::new();
     let checked = check(sources, &Targets::default().requirements(), &mut faults);
@@ -119,7 +119,7 @@ fn checked(sources: &Sources) -> usize {
     model.operations.len()
 }
 
-/// A copy of a spec with many commands more.
+/// Copies a spec and adds many commands.
 fn write_spec(from: &Path, to: &Path) {
     copy(from, to);
     let protocol = to.join("protocol.yaml");
@@ -207,7 +207,7 @@ struct Client {
     root: String,
     text: String,
     version: i32,
-    /// The last version of which the faults have been told.
+    /// The last version whose errors the server has published.
     told: i32,
     ids: i32,
 }
@@ -243,7 +243,8 @@ impl Client {
         format!("{}/{path}", self.root)
     }
 
-    /// Changes a letter and asks; how long the answer takes. The faults are waited for before the next change.
+    /// Changes a letter, asks, and returns the time until the response. It then waits for the errors, so that the next
+    /// change starts from a checked text.
     fn after_change(&mut self, path: &str, question: Option<&str>, at: &str) -> Duration {
         self.version += 1;
         let (line, column) = place(&self.text, "Get number 5\n");
@@ -321,7 +322,7 @@ impl Client {
         }
     }
 
-    /// Waits until the faults of the present text are told.
+    /// Waits until the server has published the errors of the current text.
     fn wait_until_told(&mut self) {
         while self.told != self.version {
             let message = self.connection.receiver.recv().expect("a server");
@@ -330,7 +331,7 @@ impl Client {
     }
 }
 
-/// Line and column of the first occurrence of a text, in a file whose lines are ASCII up to there.
+/// Returns line and column of the first occurrence of `part`. The lines must be ASCII up to there.
 fn place(text: &str, part: &str) -> (u32, u32) {
     let at = text.find(part).expect("it is there");
     let before = &text[..at];

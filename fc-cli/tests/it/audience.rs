@@ -1,8 +1,8 @@
-//! What is made for one audience.
+//! Output for one audience.
 
 use crate::support::Project;
 
-/// Whether a generated file below this directory says this.
+/// Returns `true` if a generated file in this directory contains `word`.
 fn says(project: &Project, directory: &str, word: &str) -> bool {
     let mut files = project.files(directory).into_iter();
     files.any(|(path, _)| {
@@ -20,12 +20,12 @@ fn audience_is_generated_into_its_own_directory() {
     let run = project.fc(&args).expect(0);
     assert!(run.stdout.contains("\ncreated "), "{run:#?}");
     assert!(project.path("user/fc-manifest.json").is_file());
-    // `probe` is the tester's.
+    // Only `tester_app` has `probe`.
     assert!(!says(&project, "user/fc-generated", "probe"));
     assert!(says(&project, "fc-generated", "probe"));
     assert!(says(&project, "user/fc-generated", "get_level"));
 
-    // What is there is fresh for that audience and for nobody else, and the project's own files are as they were.
+    // The output is up to date for that audience only, and the project's own files are unchanged.
     let check = |audience: &str| {
         let check = ["generate", "--check", "--for", audience, "--out", "user"];
         project.fc(&check)

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::io::Write as _;
 use std::process::Stdio;
 
-/// Arguments, exit status, and texts in the output or in the errors.
+/// Arguments, exit status, and strings in the output or the errors.
 type Case = (&'static [&'static str], i32, &'static [&'static str]);
 
 const CASES: &[Case] = &[
@@ -113,7 +113,7 @@ fn a_value_out_of_range_is_not_sent() {
         "--allow",
         "motion",
     ];
-    // It is refused before a connection is made, so no robot is needed.
+    // The command refuses the value before it connects, so no robot is needed.
     let run = project.fc(&args).expect(2);
     for text in [
         "data.level",
@@ -160,7 +160,7 @@ fn a_robot_that_is_not_there_gives_status_4() {
 #[test]
 fn a_robot_that_does_not_answer_gives_status_4() {
     let project = Project::new();
-    // The listener accepts in the kernel, and no program reads.
+    // The kernel accepts the connection, but no program reads from it.
     let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = silent.local_addr().expect("its address").to_string();
     let run = project

@@ -1,11 +1,11 @@
-//! `fcproto check` and what all commands have in common.
+//! `fcproto check`, and behaviour that all commands share.
 
 use std::process::Stdio;
 
 use crate::support::{self, Project, copy};
 use serde_json::Value;
 
-/// Two broken files; the faults of both show up.
+/// Creates a project with errors in two files. A run reports both.
 fn broken() -> Project {
     let project = Project::new();
     project.append("spec/protocol.yaml", "回充: [ 甲\n");
@@ -181,7 +181,7 @@ fn help_says_how_it_ends() {
     }
 }
 
-/// A reader that goes away (`fcproto explain | head`) is no failure.
+/// A closed reader, as in `fcproto explain | head`, is not an error.
 #[test]
 fn closed_stdout_is_no_failure() {
     let mut command = support::command(&["explain"]);
@@ -193,7 +193,7 @@ fn closed_stdout_is_no_failure() {
     assert!(child.wait().expect("it ends").success());
 }
 
-/// Code hosts look for annotated files from the root of the repository.
+/// Code hosts resolve the paths of annotations from the root of the repository.
 #[test]
 fn paths_for_code_hosts_count_from_the_repository() {
     let outer = Project::empty();
@@ -207,7 +207,7 @@ fn paths_for_code_hosts_count_from_the_repository() {
     };
     let expected = "tools/protocol/spec/protocol.yaml";
 
-    // From outside with `--root`, before there is a repository.
+    // Runs outside with `--root`, before the repository exists.
     let args = ["check", "--root", project, "--format"];
     let github = outer.fc(&[&args[..], &["github"]].concat()).expect(1);
     assert!(
@@ -217,7 +217,7 @@ fn paths_for_code_hosts_count_from_the_repository() {
     let log = outer.fc(&[&args[..], &["sarif"]].concat()).expect(1);
     assert_eq!(sarif(&log), expected);
 
-    // From inside of a repository.
+    // Runs inside a repository.
     std::fs::create_dir(outer.path(".git")).expect("a directory");
     let github = outer
         .fc_in(project, &["check", "--format", "github"])
@@ -227,7 +227,7 @@ fn paths_for_code_hosts_count_from_the_repository() {
         "{github:#?}"
     );
 
-    // As the host itself says.
+    // `GITHUB_WORKSPACE` takes precedence.
     let output = support::command(&["check", "--format", "github"])
         .current_dir(outer.path(project))
         .env("GITHUB_WORKSPACE", outer.path("tools"))
@@ -238,7 +238,7 @@ fn paths_for_code_hosts_count_from_the_repository() {
         "{run:#?}"
     );
 
-    // People and other programs are told the path from the project's root.
+    // People and other programs get paths relative to the project's root.
     let run = outer.fc_in(project, &["check"]).expect(1);
     assert!(run.stderr.contains("--> spec/protocol.yaml:"), "{run:#?}");
     let run = outer
@@ -250,7 +250,7 @@ fn paths_for_code_hosts_count_from_the_repository() {
     );
 }
 
-/// Where a part of the spec is not there at all, that is said, and not what follows from it.
+/// A missing part of the spec is the only error. Its consequences are not reported.
 #[test]
 fn missing_part_is_the_only_error() {
     let faults = |project: &Project| -> Vec<String> {

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::io::Write as _;
 use std::process::Stdio;
 
-/// Runs the command in a project with an input.
+/// Runs the command in a project with `input` on standard input.
 fn piped(project: &Project, args: &[&str], input: &[u8]) -> Run {
     let mut child = command(args)
         .current_dir(project.path(""))
@@ -84,7 +84,7 @@ fn filters_choose_frames_and_errors_set_the_status() {
     let project = Project::new();
     let level = encoded(&project, &["set_level", "--id", "7"]);
     let get = encoded(&project, &["get_level", "--id", "8"]);
-    // The last digit is that of the body.
+    // Changes the last digit, which belongs to the body.
     let mut broken = level.trim_end().to_owned();
     let last = if broken.ends_with('D') { "E" } else { "D" };
     broken.replace_range(broken.len() - 1.., last);

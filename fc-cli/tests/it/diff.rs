@@ -5,7 +5,7 @@ use crate::support::Project;
 use serde_json::{Value, json};
 use std::process::Command;
 
-/// Single bytes of a spec that passed unnoticed before: the file, what is there, and what comes there.
+/// Small changes of a spec that an earlier version missed: the file, the old text, the new text and the rule.
 const FLIPS: [(&str, &str, &str, &str); 8] = [
     (
         "protocol.yaml",
@@ -57,7 +57,7 @@ const FLIPS: [(&str, &str, &str, &str); 8] = [
     ),
 ];
 
-/// The project of the documentation, with its spec once more as it was.
+/// Creates the project of the documentation, with a copy of its spec in `old`.
 fn project() -> Project {
     let project = Project::new();
     support::copy(&project.path("spec"), &project.path("old/spec"));

@@ -4,13 +4,13 @@ use crate::support::{Project, copy};
 use serde_json::Value;
 use std::path::Path;
 
-/// The request and the response of `get_lift`. The response has a key `age`, which the spec does not have.
+/// The request and the response of `get_lift`. The response has the key `age`, which the spec lacks.
 const UNKNOWN_KEY: &str = "
 4C413F4C0000000102000000000000EEEFAE807FC6F07A5408E00EA81B44430000081F000000200101070000007B226174223A313730303030303030303030302C226C6966744964223A337D
 4C4121C10000000102000000000000C1EAD372B6EB03A88C9B5D90A7A23DF800000894000000200101070000007B22616765223A342C226174223A313730303030303030303030302C22646F6F72223A302C2266616E223A747275652C22666C6F6F72223A322C226C69676874223A312C226C6F6164223A38302E352C226E616D65223A226E6F727468222C2270686F746F223A2241414141222C227263223A302C22736179223A22E5A5BD222C2273746F7073223A5B7B226174223A317D5D7D
 ";
 
-/// A project with the spec of the lift, and a recording.
+/// Creates a project with the spec of the lift, and a recording.
 fn recorded(text: &str) -> Project {
     let project = Project::empty();
     let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-workshop/tests/drift/spec");

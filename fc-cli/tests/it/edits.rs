@@ -1,4 +1,5 @@
-//! Commands that edit the spec, in every project of `init`: the file stays formatted and keeps its line ends and mark.
+//! Commands that edit the spec, in projects of `init`. They keep files formatted and keep line ends and byte order
+//! marks.
 
 use crate::support::{Project, Run};
 
@@ -6,10 +7,10 @@ const LIGHT: &str = "lamp/spec/commands/light.yaml";
 
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
-/// Texts and their replacements.
+/// Strings and their replacements.
 type Changes<'t> = &'t [(&'t str, &'t str)];
 
-/// A project of `init` in `lamp`, with some texts of a group replaced.
+/// Runs `init` in `lamp` and applies changes to a group.
 fn lamp(changes: Changes<'_>) -> Project {
     let place = Project::empty();
     place.fc(&["init", "lamp"]).expect(0);
@@ -31,7 +32,7 @@ fn settle(place: &Project, args: &[&str]) -> Run {
     place.fc_in("lamp", &[&["settle"], args, &date].concat())
 }
 
-/// The spec is formatted and has neither errors nor findings.
+/// Checks that the spec is formatted and has neither errors nor findings.
 fn is_sound(place: &Project) {
     place.fc_in("lamp", &["fmt", "--check"]).expect(0);
     let run = place.fc_in("lamp", &["check", "--deny", "warnings"]);
@@ -47,7 +48,7 @@ const REQUEST: &str = "    request:
       mood: { type: \"Mood?\", zh: 色调；缺省为不变, en: \"Mood; absent leaves it as it is\" }
 ";
 
-/// Each fact that a spec can be in doubt of, and the answer to it.
+/// Settles each kind of fact that a spec can leave open.
 #[test]
 fn settle_works_in_a_project_of_init() {
     let body = "level: { type: u8, max: 100, example: 1, zh: 级别, en: Level }\n";
@@ -110,7 +111,7 @@ fn settle_works_in_a_project_of_init() {
     }
 }
 
-/// The question names its fact, and the answer is long.
+/// The question states its fact, and the answer is long.
 #[test]
 fn settle_leaves_a_formatted_file() {
     let answer = "    answers:
@@ -125,7 +126,7 @@ fn settle_leaves_a_formatted_file() {
     let args = ["set_light.code", "--code", "0x0102", "--reply", &reply];
     let run = settle(&place, &args).expect(0);
     is_sound(&place);
-    // The lines shown are those written.
+    // The output shows the lines as written.
     let text = place.read(LIGHT);
     let added = run.stdout.lines().filter_map(|line| line.strip_prefix('+'));
     for line in added {
@@ -183,7 +184,7 @@ fn fix_leaves_a_formatted_file() {
     }
 }
 
-/// An editor on Windows ends every line in CR and LF, and writes a mark in front.
+/// An editor on Windows ends lines with CR LF and starts the file with a byte order mark.
 #[test]
 fn editing_commands_keep_line_ends_and_mark() {
     let answered = ["settle", "set_light.code", "--code", "0x0102", "--by", "me"];
@@ -264,7 +265,7 @@ fn standard_input_keeps_its_mark() {
     assert_eq!(String::from_utf8_lossy(&output.stdout), expected);
 }
 
-/// The file changes, and the link to it stays.
+/// The command changes the file and keeps the link to it.
 #[cfg(unix)]
 #[test]
 fn a_linked_file_stays_linked() {

@@ -12,7 +12,8 @@ fn every_listed_code_can_be_explained() {
         let (code, title) = line.split_once("  ").expect("a code and its title");
         let text = project.fc(&["explain", code]).expect(0).stdout;
         assert!(text.starts_with(&format!("{code}: {title}\n\n")), "{text}");
-        // A fault has examples; a rule of `fcproto diff` says whom it breaks, one of `fcproto lint` how it is set.
+        // An error has examples. A rule of `fcproto diff` has its effect on the wire, a rule of `fcproto lint` its
+        // default level.
         let has_examples = text.contains(" bad\n") && text.contains(" good\n");
         let is_of_diff = text.contains("\n- Wire: ");
         assert!(

@@ -6,7 +6,7 @@ use std::process::Stdio;
 
 use crate::support::{Project, Run, command};
 
-/// A file in the layout, and the same in another.
+/// A formatted file. `OTHER` is the same file in another layout.
 const LAID_OUT: &str = "\
 group: { id: lamp, zh: 灯, en: Lamp }
 
@@ -70,7 +70,7 @@ fn fmt_writes_only_files_that_change() {
     };
     assert!(same("protocol.yaml"));
 
-    // Another time nothing is written.
+    // A second run writes nothing.
     let run = project.fc(&["fmt"]).expect(0);
     assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
     assert_eq!(project.files("spec"), after);
@@ -138,7 +138,7 @@ fn standard_input_comes_back_laid_out() {
         piped(&["fmt", "--check", "-"], LAID_OUT).expect(0).stdout,
         ""
     );
-    // An editor that takes what comes back loses nothing.
+    // A file with errors comes back unchanged, so an editor loses nothing.
     for text in [BROKEN, UNKNOWN] {
         assert_eq!(piped(&["fmt", "-"], text).expect(1).stdout, text);
     }

@@ -86,7 +86,7 @@ fn the_command_to_run_is_the_one_that_was_run() {
     );
 }
 
-/// A directory without a spec gets from the dump what the project gets from its YAML.
+/// A directory without a spec gets the same files from a dump as the project gets from its YAML.
 #[test]
 fn from_a_dump_all_products_are_the_same() {
     let project = generated();
@@ -188,7 +188,7 @@ fn a_faulty_spec_generates_nothing() {
     assert_eq!(project.files(""), before);
 }
 
-/// A command group under a new name leaves nothing behind.
+/// Renaming a command group removes the files with the old name.
 #[test]
 fn orphans_are_removed() {
     let project = generated();

@@ -1,11 +1,11 @@
-//! `fcproto git check`: the staged files count, and nothing else.
+//! `fcproto git check`, which checks the staged files only.
 
 use crate::support::Project;
 use crate::support::git::{git, run_git};
 
 const LIGHT: &str = "spec/commands/light.yaml";
 
-/// A project of `init` under version control, with hooks; `directory` is where it is in the repository.
+/// A project of `init` under version control, with hooks. `directory` is its path in the repository.
 struct Repository {
     project: Project,
     directory: &'static str,
@@ -80,9 +80,9 @@ fn broken_staged_file_stops_a_commit() {
             let (is_committed, said) = repository.commit(&[]);
             assert!(!is_committed, "{place}: {new}");
             assert!(said.contains(message), "{place}: {said}");
-            // The copy is gone.
+            // Messages do not name the temporary copy.
             assert!(!said.contains("fcproto-"), "{said}");
-            // A commit of named paths has its own index.
+            // A commit of named paths uses a separate index.
             let path = repository.path(LIGHT);
             let (is_committed, said) = repository.commit(&["--", &path]);
             assert!(is_committed || said.contains("nothing"), "{said}");
@@ -104,7 +104,7 @@ fn unstaged_changes_stop_no_commit() {
         repository.git(&["add", "--intent-to-add", &intended]);
         let (is_committed, said) = repository.commit(&[]);
         assert!(is_committed, "{place}: {said}");
-        // With the change it does not pass.
+        // A commit that includes the change fails.
         let (is_committed, said) = repository.commit(&["--all"]);
         assert!(!is_committed, "{place}: {said}");
     }
@@ -127,7 +127,7 @@ fn untracked_file_of_the_spec_is_missed() {
     assert!(is_committed, "{said}");
 }
 
-/// No commit has them, so those of the working tree count.
+/// Commits do not contain ignored files, so the check uses those of the working tree.
 #[test]
 fn ignored_generated_files_are_copied() {
     let repository = Repository::new("");
@@ -154,7 +154,7 @@ fn commit_without_a_project_passes() {
     assert!(is_committed, "{said}");
 }
 
-/// A hook runs with the paths of the main repository in its environment.
+/// Git runs a hook with the paths of the main repository in its environment.
 #[test]
 fn linked_working_tree_is_checked() {
     let repository = Repository::new("below/it's a lamp");

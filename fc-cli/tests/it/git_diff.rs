@@ -1,4 +1,4 @@
-//! `fcproto git diff`: what git shows of a change of the spec.
+//! `fcproto git diff`: the output of git for changes of the spec.
 
 use crate::support::Project;
 use crate::support::git::git;
@@ -26,7 +26,7 @@ fn change(project: &Project, file: &str, from: &str, to: &str) {
     project.write(file, &text.replacen(from, to, 1));
 }
 
-/// What git says must have all of these and none of those.
+/// Checks that the output contains all of `all` and none of `none`.
 fn says(text: &str, all: &[&str], none: &[&str]) {
     for wanted in all {
         assert!(text.contains(wanted), "no `{wanted}` in {text}");
@@ -57,7 +57,7 @@ fn a_change_is_told_in_words_with_whom_it_breaks() {
 #[test]
 fn a_change_over_several_files_is_told_of_each_apart() {
     let project = project();
-    // A value and a command, then a type under another name, with which neither file alone fits the other version.
+    // Changes a value and a command, then renames a type. After the rename, neither file alone fits the other version.
     change(&project, TYPES, "burning", "alight");
     change(&project, TYPES, "burning", "alight");
     change(&project, LAMP, "code: 0x0104", "code: 0x0109");

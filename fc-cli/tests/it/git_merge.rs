@@ -1,4 +1,4 @@
-//! `fcproto git`: two branches that each add a command to one group, at the same place.
+//! `fcproto git`, with two branches that each add a command at the same place in one group.
 
 use crate::support;
 use crate::support::Project;
@@ -6,7 +6,7 @@ use crate::support::git::{git, run_git};
 
 const GROUP: &str = "spec/commands/left.yaml";
 
-/// A project under version control in which all targets are made, as generated.
+/// Creates a project under version control with the generated files of all targets.
 fn project() -> Project {
     let project = Project::new();
     let protocol = project.read("spec/protocol.yaml");
@@ -25,7 +25,7 @@ fn project() -> Project {
     project
 }
 
-/// A command, which is in the changelog under a date that nothing else has.
+/// Returns a command. Its changelog entry has a date that occurs nowhere else.
 fn command(name: &str, code: u16) -> String {
     format!(
         "  {name}:
@@ -42,7 +42,7 @@ fn command(name: &str, code: u16) -> String {
     )
 }
 
-/// Sets up a clone as its output says, and commits what it asks for.
+/// Sets up a clone as the output of `fcproto git setup` describes, and commits the lines that it asks for.
 fn set_up(project: &Project, options: &[&str]) {
     let setup = [&["git", "setup"], options].concat();
     let said = project.fc(&setup).expect(0).stdout;
@@ -54,7 +54,7 @@ fn set_up(project: &Project, options: &[&str]) {
     assert!(!again.contains(".gitattributes"), "{again}");
 }
 
-/// A branch with a command more behind the first.
+/// Creates a branch with another command after the first.
 fn branch(project: &Project, name: &str, code: u16) {
     git(project, &["switch", "--quiet", "--create", name, "main"]);
     project.append(GROUP, &format!("\n{}", command(name, code)));
@@ -72,9 +72,9 @@ fn branches(project: &Project) {
     branch(project, "pear", 0x0A06);
 }
 
-/// Puts what is generated into the last commit.
+/// Adds the generated files to the last commit.
 fn amend(project: &Project) {
-    // Those who run tests may have no name for git.
+    // The user who runs the tests may have no name set for git.
     for key in ["name", "email"] {
         git(
             project,
@@ -84,13 +84,13 @@ fn amend(project: &Project) {
     project.fc(&["git", "stage", "--amend"]).expect(0);
 }
 
-/// Files in conflict.
+/// Returns the files in conflict.
 fn conflicts(project: &Project) -> Vec<String> {
     let list = git(project, &["diff", "--name-only", "--diff-filter=U"]);
     list.lines().map(str::to_owned).collect()
 }
 
-/// Everything says what the spec says, which has both commands, and nothing is left to commit.
+/// Checks that both commands are in the spec and in each target. All files are up to date and committed.
 fn is_whole(project: &Project) {
     project.fc(&["check", "-q", "--deny", "warnings"]).expect(0);
     project.fc(&["fmt", "--check"]).expect(0);
@@ -98,7 +98,7 @@ fn is_whole(project: &Project) {
     assert_eq!(git(project, &["status", "--porcelain"]), "");
     for name in ["apple", "pear"] {
         assert!(project.read(GROUP).contains(name));
-        // Each target has what it makes of the command.
+        // The output of each target names the command.
         let found = git(project, &["grep", "-il", name]);
         for target in [
             "fc-generated/src",
@@ -190,7 +190,7 @@ fn only_lines_changed_by_both_conflict() {
     assert!(!merged, "{text}");
     assert_eq!(conflicts(&project), [GROUP]);
     assert!(project.read(GROUP).contains("<<<<<<< "));
-    // Once it is decided, the hook of the commit says what is missing.
+    // After the conflict is resolved, the hook of the commit reports the stale files.
     git(&project, &["checkout", "--quiet", "--theirs", GROUP]);
     git(&project, &["add", GROUP]);
     let (committed, text) = run_git(&project, &["commit", "--no-edit"]);
@@ -235,7 +235,7 @@ fn a_hook_of_somebody_else_stays() {
     assert!(!project.path(".git/hooks/post-merge").exists());
 }
 
-/// The program was called `fc`, and its hooks call it by its path.
+/// An earlier version of the program was called `fc`. Its hooks contain its path.
 #[test]
 fn hooks_with_the_old_name_are_replaced() {
     let project = project();

@@ -1,4 +1,4 @@
-//! Help and usage errors in both languages, and the page of the reference with the same texts.
+//! Help and usage errors in both languages, and the reference page with the same texts.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -22,7 +22,7 @@ fn run(args: &[&str]) -> Run {
     run_in(100, args)
 }
 
-/// The arguments with `--lang` behind them.
+/// Appends `--lang` to the arguments.
 fn in_language<'a>(args: &[&'a str], lang: &'a str) -> Vec<&'a str> {
     [args, &["--lang", lang]].concat()
 }
@@ -36,7 +36,7 @@ fn width(text: &str) -> usize {
     text.chars().count() + wide
 }
 
-/// Every command, as its words, and the program itself without any.
+/// The words of every command, and an empty list for the program itself.
 static COMMANDS: LazyLock<Vec<Vec<String>>> = LazyLock::new(|| {
     let page = run(&["help-page"]).expect(0).stdout;
     let heads = page
@@ -55,7 +55,7 @@ type Helps = Arc<Vec<(String, String)>>;
 /// Flag, language and columns.
 type Asked = (&'static str, &'static str, usize);
 
-/// Tests share what takes a process for each command.
+/// Help texts that the tests share, because each command takes a process.
 static HELPS: Mutex<BTreeMap<Asked, Helps>> = Mutex::new(BTreeMap::new());
 
 fn helps(flag: &'static str, lang: &'static str, columns: usize) -> Helps {
@@ -69,7 +69,7 @@ fn helps(flag: &'static str, lang: &'static str, columns: usize) -> Helps {
     Arc::clone(helps.or_insert_with(|| Arc::new(COMMANDS.iter().map(help).collect())))
 }
 
-/// The lines of a section.
+/// Returns the lines of a section.
 fn section<'h>(help: &'h str, title: &str) -> Vec<&'h str> {
     let lines = help.lines().skip_while(|line| *line != title).skip(1);
     lines.take_while(|line| !line.is_empty()).collect()
@@ -93,7 +93,7 @@ fn page_of_the_reference_is_up_to_date() {
     }
 }
 
-/// Sections, tables, lists and code are the same; words are not.
+/// The pages of both languages have the same sections, tables, lists and code.
 #[test]
 fn pages_have_the_same_structure() {
     let shape = |lang: &str| {
@@ -143,7 +143,7 @@ fn summaries_are_short_and_have_no_full_stop() {
 fn every_command_and_argument_has_both_languages() {
     for (name, help) in helps("-h", "en", 100).iter() {
         assert!(!is_chinese(help), "{name}: {help}");
-        // A term without a text.
+        // Finds an argument without a description.
         let bare = help.lines().find(|line| {
             line.starts_with("  ") && !line.trim().is_empty() && !line.trim().contains("  ")
         });
@@ -195,7 +195,7 @@ fn each_global_option_has_one_line() {
     }
 }
 
-/// Lines of code are not broken; all others fit, and none is broken twice.
+/// Every line except code fits the terminal, and no paragraph is wrapped twice.
 #[test]
 fn help_fits_the_terminal() {
     for lang in ["en", "zh"] {
@@ -221,7 +221,7 @@ fn help_fits_the_terminal() {
     }
     let wide = run_in(200, &["check", "--help"]).expect(0).stdout;
     assert!(wide.lines().all(|line| width(line) <= 100), "{wide}");
-    // A paragraph that is broken twice has a short line before its last one.
+    // A paragraph that is wrapped twice has a short line before its last one.
     let helps = helps("--help", "en", 80);
     let (_, help) = helps.last().expect("the program's own");
     let paragraph = help
@@ -359,7 +359,7 @@ fn usage_errors_have_both_languages() {
     }
 }
 
-/// The option counts wherever it is, and although the rest cannot be parsed.
+/// `--lang` applies at any position, even if the rest cannot be parsed.
 #[test]
 fn language_is_known_before_the_rest_is_parsed() {
     for args in [

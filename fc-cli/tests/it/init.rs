@@ -31,7 +31,7 @@ fn a_project_checks_and_is_generated_at_once() {
     assert!(group.contains("pub fn get_battery<"), "{group}");
 }
 
-/// Files that people edit, and how a comment begins in them.
+/// Files that people edit, and the start of a comment in them.
 const WRITTEN: [(&str, &str); 7] = [
     ("fc.yaml", "# "),
     (".gitattributes", "# "),
@@ -89,7 +89,7 @@ fn chinese_project_differs_in_texts_only() {
         }
         assert_eq!(comments(&zh).is_empty(), comments(&en).is_empty(), "{path}");
         assert_eq!(code(&zh, comment), code(&en, comment), "{path}");
-        // Texts that the programs print.
+        // The program prints these strings.
         let printed = zh
             .lines()
             .filter(|line| line.contains("{}") || line.contains("{:?}"));
@@ -101,7 +101,7 @@ fn chinese_project_differs_in_texts_only() {
     for paragraph in readme.split("\n\n").filter(|it| !it.starts_with("```")) {
         assert!(is_chinese(paragraph), "{paragraph}");
     }
-    // The same lines to type.
+    // Both READMEs list the same commands to type.
     let typed = |lang: &str| {
         let readme = place.read(&format!("{lang}/README.md"));
         let block = readme.split("```").nth(1).expect("a block").to_owned();
@@ -138,7 +138,7 @@ fn setup_keeps_settings_of_others() {
     );
     assert_eq!(place.files("mine").len(), 1);
 
-    // A repository that has just been made is empty.
+    // A directory with only a new repository counts as empty.
     place.write("fresh/.git/HEAD", "ref: refs/heads/main\n");
     place.fc(&["init", "fresh"]).expect(0);
 }
@@ -172,7 +172,7 @@ fn wrong_usage_writes_nothing() {
     }
 }
 
-/// The lines of its README: it compiles, the samples of its docs run, and its robot and its app talk.
+/// Runs the tests of a new project: it compiles, the samples of its docs run, and its robot and app talk.
 #[test]
 #[ignore = "compiles a project of its own"]
 fn the_robot_and_the_app_of_a_project_talk() {
@@ -184,7 +184,7 @@ fn the_robot_and_the_app_of_a_project_talk() {
 fn talks(lang: &str) {
     let place = Project::empty();
     place.fc(&["init", "lamp", "--lang", lang]).expect(0);
-    // The versions that are there, so that nothing has to be fetched.
+    // Uses the locked versions of this repository, so that cargo fetches nothing.
     let lock = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.lock");
     std::fs::copy(lock, place.path("lamp/Cargo.lock")).expect("the versions");
     let output = Command::new(env!("CARGO"))
@@ -210,7 +210,7 @@ fn talks(lang: &str) {
     }
 }
 
-/// The programs of a project in both languages: only comments and texts may differ.
+/// In the programs of both languages, only comments and strings differ.
 #[test]
 fn programs_of_both_languages_are_the_same() {
     let templates = Path::new(env!("CARGO_MANIFEST_DIR")).join("templates/init");
@@ -219,7 +219,7 @@ fn programs_of_both_languages_are_the_same() {
         let [en, zh] = [read(file.to_owned()), read(format!("zh/{file}"))];
         assert_eq!(en.lines().count(), zh.lines().count(), "{file}");
         for (en, zh) in en.lines().zip(zh.lines()) {
-            // Without the comment, and without the text.
+            // Removes the comment and the strings.
             let code = |line: &str| {
                 let line = line.split("//").next().unwrap_or_default();
                 line.split('"').step_by(2).collect::<String>()

@@ -1,16 +1,16 @@
-//! Files that cannot be read are errors, and change nothing.
+//! A file that cannot be read is an error, and the command changes nothing.
 
 use crate::support::{Project, Run};
 use std::path::Path;
 
-/// A project of `init` in `lamp`.
+/// Runs `init` in `lamp`.
 fn lamp() -> Project {
     let place = Project::empty();
     place.fc(&["init", "lamp"]).expect(0);
     place
 }
 
-/// What can be in the place of a file, and a part of the message about it.
+/// Kinds of unreadable files, each with a part of the message about it.
 const KINDS: [(&str, &str); 6] = [
     ("link", "is a link to a file that cannot be read"),
     ("directory", "is a directory, not a file"),
@@ -20,7 +20,7 @@ const KINDS: [(&str, &str); 6] = [
     ("large", "is larger than "),
 ];
 
-/// Puts something else in the place of a file.
+/// Replaces a file with an unreadable one.
 fn spoil(path: &Path, kind: &str) {
     let _ = std::fs::remove_file(path);
     match kind {
@@ -40,7 +40,7 @@ fn spoil(path: &Path, kind: &str) {
     }
 }
 
-/// Every file of the project but one, without times.
+/// Returns the paths of all files in the project except `fc.yaml`.
 fn files(place: &Project) -> Vec<std::path::PathBuf> {
     let all = place.files("lamp").into_iter().map(|(path, _)| path);
     all.filter(|path| !path.ends_with("fc.yaml")).collect()
@@ -133,7 +133,7 @@ fn unreadable_releases_are_an_error() {
     }
 }
 
-/// Sheets, bodies and dumps. A pipe may be a file of the shell's `<(…)`.
+/// Sheets, bodies and dumps must be readable. Pipes are allowed here, because `<(…)` of a shell is one.
 #[test]
 fn unreadable_inputs_are_an_error() {
     for (kind, _) in KINDS.iter().filter(|(kind, _)| *kind != "pipe") {

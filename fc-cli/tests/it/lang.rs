@@ -1,8 +1,8 @@
-//! In which language `fcproto` speaks.
+//! The language of the output of `fcproto`.
 
 use crate::support::{Project, Run, command};
 
-/// A run in a project with a fault, with these variables set.
+/// Runs the command in a project with these environment variables.
 fn check(project: &Project, variables: &[(&str, &str)], args: &[&str]) -> Run {
     let mut command = command(args);
     command.envs(variables.iter().copied());
@@ -10,7 +10,7 @@ fn check(project: &Project, variables: &[(&str, &str)], args: &[&str]) -> Run {
     Run::new(&output.expect("the command can be run"))
 }
 
-/// A project whose spec has a key twice.
+/// Creates a project whose spec has a duplicate key.
 fn faulty() -> Project {
     let project = Project::new();
     project.append("spec/types.yaml", "types: {}\n");
@@ -35,7 +35,7 @@ fn the_environment_chooses_the_language() {
             ZH,
         ),
         (&[("LC_ALL", "C"), ("LC_MESSAGES", "zh_CN.UTF-8")], EN),
-        // A variable that is empty is not set.
+        // An empty variable counts as unset.
         (&[("LC_ALL", ""), ("LANG", "zh_CN.UTF-8")], ZH),
     ];
     for (variables, expected) in cases {
@@ -62,7 +62,7 @@ fn the_option_has_the_last_word() {
     check(&project, &[], &["--lang", "de", "check"]).expect(2);
 }
 
-/// What machines read is in that language too; its keys and words are not.
+/// Machine-readable formats have translated messages. Their keys and keywords stay the same.
 #[test]
 fn every_format_follows() {
     let project = faulty();
@@ -75,7 +75,7 @@ fn every_format_follows() {
     }
 }
 
-/// The same places in the same colors, whatever the language.
+/// Every language uses the same colors at the same places.
 #[test]
 fn colors_are_the_same() {
     let project = faulty();
@@ -106,7 +106,7 @@ fn explanations_follow() {
     assert!(list.stdout.contains("FC0012  重复的键\n"), "{list:#?}");
 }
 
-/// So do commands that say something of their own, well or ill.
+/// Other messages of commands follow the language too, for success and for errors.
 #[test]
 fn output_follows_the_language() {
     let project = Project::new();

@@ -1,8 +1,8 @@
-//! A project whose texts are in one language.
+//! Projects with texts in one language only.
 
 use crate::support::Project;
 
-/// The small spec without its Chinese texts.
+/// Creates the small spec without its Chinese texts.
 fn english() -> Project {
     let project = Project::new();
     for (path, _) in project.files("spec") {
@@ -50,7 +50,7 @@ fn texts_of_one_language_are_enough() {
     let schema = project.read("spec/fc-spec.schema.json");
     assert!(!schema.contains("\"zh\",\n"), "a schema that requires `zh`");
 
-    // A text of the other language is welcome, and does not replace a required one.
+    // A text in another language is allowed, but does not replace a required one.
     project.write("fc.yaml", "languages: [zh]\n");
     let run = project.fc(&["check"]).expect(1);
     assert!(run.stderr.contains("the Chinese text `zh` of"), "{run:#?}");

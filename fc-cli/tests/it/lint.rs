@@ -3,7 +3,7 @@
 use crate::support::{Project, Run};
 use serde_json::Value;
 
-/// A project with one finding of its own rule, whatever the rules of the tool find.
+/// Creates a project with one finding of a house rule. Built-in rules are off.
 fn project() -> Project {
     let project = Project::new();
     project.write(
@@ -42,7 +42,7 @@ fn level(project: &Project, level: &str) {
     );
 }
 
-/// The id of the one finding.
+/// Returns the ID of the only finding.
 fn id(run: &Run) -> String {
     let start = run.stderr.find("FC0890-").expect("an id");
     run.stderr[start..]
@@ -127,7 +127,7 @@ fn invalid_settings_are_shown_with_their_place() {
     ] {
         assert!(run.stderr.contains(part), "{part:?} in {run:#?}");
     }
-    // What else reads the file does not care.
+    // Other commands that read the file ignore this error.
     project.fc(&["check"]).expect(0);
 }
 

@@ -1,13 +1,12 @@
-//! Two branches that each add a command, merged by git as it comes.
+//! Two branches that each add a command, merged by plain git.
 //!
-//! What is generated is committed, so it has to merge like the spec it comes from: no line that every
-//! addition changes (a count, a line number, the next free code), and no list in which any two additions
-//! stand side by side.
+//! Generated files are committed, so they must merge like the spec. No line may change with every addition, such as a
+//! count, a line number or the next free code. No list may put two additions next to each other.
 
 use crate::support::Project;
 use crate::support::git::{git, run_git};
 
-/// A project with two groups of two commands each, under version control, as generated.
+/// Creates a generated project under version control, with two groups of two commands each.
 fn project() -> Project {
     let project = Project::new();
     let protocol = project.read("spec/protocol.yaml");
@@ -51,7 +50,7 @@ fn command(name: &str, code: u16) -> String {
     )
 }
 
-/// A branch with one command more at the end of a group.
+/// Creates a branch with another command at the end of a group.
 fn branch(project: &Project, name: &str, group: &str, code: u16) {
     git(project, &["switch", "--quiet", "--create", name, "main"]);
     project.append(&file_of(group), &command(name, code));

@@ -24,7 +24,7 @@ fn a_taken_port_is_an_error_that_names_it() {
     assert!(run.stderr.contains(&mock.commands), "{run:?}");
 }
 
-/// A scenario, the calls of an app that does not meet it, and the error of the mock.
+/// A scenario, the calls of an app that does not follow it, and the error of the mock.
 const FAULTY: &[(&str, &[&str], &str)] = &[
     (
         "on: [{ request: probe, reports: [alarm] }]\n\
@@ -95,7 +95,7 @@ fn an_app_finds_deviations_of_a_robot() {
     let project = Project::new();
     let mock = Robot::mock(&project, &[]);
     let options = ["--expect", "--pace", "1", "--lang", "en"];
-    // Without a scenario, it sends each command that only reads.
+    // Without a scenario, the app sends each command that only reads.
     let run = mock.app(&project, &options).expect(0);
     assert!(run.stdout.contains("get_level  0 fine"), "{run:?}");
     assert!(!run.stdout.contains("probe"), "{run:?}");
@@ -130,7 +130,7 @@ fn an_app_finds_deviations_of_a_robot() {
 fn an_app_sends_only_allowed_commands() {
     let project = Project::new();
     project.write("s.yaml", "expect: [get_level, probe]\n");
-    // It is refused before a connection is made, so no robot is needed.
+    // The app refuses the command before it connects, so no robot is needed.
     let app = [
         "mock",
         "--as",
@@ -149,7 +149,7 @@ fn an_app_sends_only_allowed_commands() {
 #[test]
 fn many_robots_have_their_ports() {
     let project = Project::new();
-    // Fewer open files than the robots need, until the mock raises its limit.
+    // The robots need more open files than this limit. The mock raises it.
     let mut mock = Command::new("sh")
         .args(["-c", "ulimit -Sn 60 && exec \"$0\" mock --count 50"])
         .arg(command(&[]).get_program())
@@ -191,7 +191,7 @@ fn robots_without_files_or_ports_are_an_error() {
     assert!(run.stderr.contains("--count"), "{run:?}");
 }
 
-/// Writes recorded traffic: a request, its response with this level, and perhaps a report with its acknowledgement.
+/// Writes recorded traffic: a request, its response with this level, and optionally a report with its acknowledgement.
 fn record(project: &Project, level: u8, has_report: bool) {
     let body = format!("{{\"level\":{level},\"stands\":[],\"others\":[]}}");
     let mut text = String::new();
@@ -220,7 +220,7 @@ fn recorded_traffic_is_replayed_as_either_side() {
     assert!(run.stdout.contains("get_level  0 fine"), "{run:?}");
     mock.end().expect(0);
 
-    // Another robot answers differently now.
+    // The other robot responds with another level.
     record(&project, 77, false);
     let other = Robot::mock(&project, &[]);
     let run = other.app(&project, &replay).expect(1);
@@ -251,7 +251,7 @@ fn an_app_waits_for_each_step() {
     let mut response = String::new();
     responses.read_line(&mut response).expect("a response");
     assert!(response.contains("get_level"), "{response}");
-    // After the end of its input, the app goes on.
+    // At the end of its input, the app continues without steps.
     drop(steps);
     assert!(app.wait().expect("it ends").success());
 }

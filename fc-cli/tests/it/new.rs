@@ -28,7 +28,7 @@ fn a_command_begins_with_the_next_free_code() {
         before.lines().collect::<Vec<_>>(),
         "the rest is as it was"
     );
-    // It is sound, and the next gets another code.
+    // The spec is valid, and the next command gets another code.
     project.fc(&["check"]).expect(0);
     let again = project
         .fc(&["new", "get_voltage", "--group", "lamp"])
@@ -36,7 +36,8 @@ fn a_command_begins_with_the_next_free_code() {
     assert!(!again.stdout.contains(code), "{again:#?}");
 }
 
-/// A group gets codes from the ranges that name it, or else from those that name none: first where it has codes.
+/// A group gets codes from the ranges that name it. Without such a range, it uses ranges that name no group, starting
+/// with one where it already has codes.
 #[test]
 fn the_code_comes_from_the_range_of_the_group() {
     let project = Project::new();
@@ -77,7 +78,7 @@ fn the_code_comes_from_the_range_of_the_group() {
     next("control", "0x0D01");
     next("arm", "0x0D01");
 
-    // A full range of the group is not left for another one.
+    // A full range of the group does not fall back to other ranges.
     for name in ["one", "two"] {
         project.fc(&["new", name, "--group", "arm"]).expect(0);
     }
@@ -110,7 +111,7 @@ fn new_report_follows_the_reports() {
     let reports = after.find("\nreports:\n").expect("reports");
     assert!(after.find("\n  battery_low:\n").expect("the report") > reports);
     assert!(after.len() > before.len());
-    // A group without reports gets some.
+    // A group without reports gets the section.
     project.write(
         "spec/commands/identity.yaml",
         "group: { id: identity, zh: 标识, en: Identity }
@@ -131,7 +132,7 @@ commands:
     project.fc(&["generate"]).expect(0);
 }
 
-/// A stream has the code of the command that starts it, or none yet, or one of its own.
+/// A stream has the code of the command that starts it, a separate code, or no code yet.
 #[test]
 fn a_stream_shares_the_code_of_its_command() {
     let project = Project::new();
@@ -230,13 +231,13 @@ fn refused_operation_changes_nothing() {
         let run = project.fc(&[&["new"], arguments].concat()).expect(status);
         assert!(run.stderr.contains(said), "{said:?} in {}", run.stderr);
         assert_eq!(run.stdout, "");
-        // No place in a text that is not on disk.
+        // Messages do not point into text that is not on disk.
         assert!(!run.stderr.contains("-->"), "{}", run.stderr);
     }
     assert_eq!(project.files("spec"), before);
 }
 
-/// Groups and codes are those of the examples; their names are free in a spec of the test's own.
+/// The test creates the groups of the examples in another spec, where the names are free.
 #[test]
 fn the_examples_of_the_help_run() {
     let project = Project::new();
@@ -279,7 +280,7 @@ commands:
     }
 }
 
-/// What is only begun is remembered: a warning until the texts are written, in every format.
+/// A placeholder text is a warning in every format until it is replaced.
 #[test]
 fn placeholder_is_a_warning() {
     let project = Project::new();

@@ -1,10 +1,10 @@
-//! `fcproto package`. The packages of this repository are installed by `.ci/use`.
+//! `fcproto package`. `.ci/use` installs the packages of this repository.
 
 use serde_json::{Value, json};
 
 use crate::support::{Project, Run, command};
 
-/// A project with a crate, whose files are up to date.
+/// Creates a project with a crate whose generated files are up to date.
 fn with_crate() -> Project {
     let project = Project::new();
     project.write("fc.yaml", "targets: { rust: { out: lamp } }\n");
@@ -20,7 +20,7 @@ fn pack(project: &Project) -> Run {
     project.fc(&["package", "--out", "dist"])
 }
 
-/// The listed files, without the crate's sources.
+/// Returns the listed files except the sources of the crate.
 fn listed(project: &Project) -> Vec<String> {
     let sums = project.read("dist/SHA256SUMS");
     let paths = sums.lines().filter_map(|line| line.split_once("  "));
@@ -71,7 +71,7 @@ fn version_follows_the_release_of_the_spec() {
     assert!(!old.exists(), "the files of the last run are replaced");
     assert!(project.path("dist/rust/vendor/note.txt").is_file());
 
-    // A comment is no other spec, and a text is one.
+    // A changed comment keeps the release number, and a changed text does not.
     let path = "spec/protocol.yaml";
     let text = project.read(path);
     project.write(path, &format!("# A comment.\n{text}"));
@@ -133,7 +133,7 @@ fn sbom_lists_all_direct_dependencies() {
     });
     assert_eq!(bill["metadata"]["component"], main);
     let requirement = |value: &str| json!([{ "name": "fcproto:requirement", "value": value }]);
-    // One of the two crates needs it.
+    // `serde` is not optional, because one of the two crates requires it.
     let others = json!([
         {
             "type": "library",
@@ -198,7 +198,7 @@ fn failed_language_does_not_stop_the_others() {
         .expect(2);
     assert!(run.stderr.contains("no target `kotlin`"), "{run:#?}");
 
-    // Without any tool, each language names the one that it needs.
+    // Without any tool, each language reports the tool that it needs.
     let mut bare = command(&["package", "--out", "dist", "rust", "cpp"]);
     let bare = bare.current_dir(project.path("")).env("PATH", "/nowhere");
     let run = Run::new(&bare.output().expect("the command can be run")).expect(1);

@@ -1,4 +1,4 @@
-//! The hooks for pre-commit, run by it.
+//! The hooks for pre-commit, run by pre-commit.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::support::git::git;
 use crate::support::{Project, Run, path_to_command};
 
-/// Runs all hooks of a project, as a commit would.
+/// Runs all hooks of a project as a commit does.
 fn hooks(project: &Project, home: &Project) -> Run {
     let output = Command::new("pre-commit")
         .args(["run", "--all-files", "--color=never"])
@@ -40,7 +40,7 @@ fn hooks_check_format_spec_and_generated_files() {
         git(project, &["commit", "--quiet", "--message", "A commit"]);
         git(project, &["rev-parse", "HEAD"]).trim().to_owned()
     };
-    // It takes hooks from a repository: here one with nothing else in it.
+    // pre-commit takes hooks from a repository. This one contains only the hooks.
     let offers = Project::empty();
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.pre-commit-hooks.yaml");
     let file = std::fs::read_to_string(file).expect("the hooks");
@@ -61,7 +61,8 @@ fn hooks_check_format_spec_and_generated_files() {
     let home = Project::empty();
     hooks(&project, &home).expect(0);
 
-    // One hook each fails: a text that is to be written is a warning, and new.
+    // First one hook fails for the format. Then two fail, because a placeholder is a warning and the new command is not
+    // generated.
     let types = project.read("spec/types.yaml");
     project.write(
         "spec/types.yaml",

@@ -1,4 +1,4 @@
-//! What a person sees who waits: on a terminal alone, and gone in the end.
+//! The progress line appears on a terminal only and disappears at the end.
 
 #![cfg(target_os = "linux")]
 
@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 use crate::support::Project;
 
-/// A project whose target is made by a program that waits until a line comes through `gate`.
+/// Creates a project with one plugin target. The plugin waits until `gate` receives a line.
 fn waiting() -> Project {
     let project = Project::new();
     project.write(
@@ -27,7 +27,8 @@ fn waiting() -> Project {
     project
 }
 
-/// Runs `fcproto generate` on a terminal, opens the gate once this has been shown, or at once; gives all that it printed.
+/// Runs `fcproto generate` on a terminal and returns its output. The gate opens when `wanted` appears, or at once
+/// without `wanted`.
 fn on_a_terminal(project: &Project, options: &str, wanted: Option<&str>) -> String {
     let command = format!("{} generate {options}", env!("CARGO_BIN_EXE_fcproto"));
     let mut child = Command::new("script")

@@ -2,7 +2,7 @@
 
 use crate::support::Project;
 
-/// A group of its own, so that nothing depends on what the project's spec asks.
+/// A separate group, so that the tests do not depend on the open questions of the spec.
 const GROUP: &str = "\
 group: { id: asked, zh: 待问, en: Asked }
 commands:
@@ -146,7 +146,7 @@ fn settled_answer_is_written_and_confirmed() {
 fn answer_that_breaks_the_spec_writes_nothing() {
     let project = project();
     for (args, why) in [
-        // No range has this code.
+        // This code is in no range.
         (vec!["switch_lamp.code", "--code", "0xFFFF"], "FC0303"),
         (vec!["C901", "--unit", "parsec"], "FC"),
         (
@@ -175,13 +175,13 @@ fn answer_that_breaks_the_spec_writes_nothing() {
     assert_eq!(project.read(LAMP), GROUP);
 }
 
-/// A sheet with these answers, by id.
+/// Fills a sheet with these answers, by ID.
 fn filled(sheet: &str, answers: &[(&str, &str)]) -> String {
     let lines = sheet.lines().map(|line| {
         let id = line.split(',').next().unwrap_or_default();
         let answer = answers.iter().find(|(of, _)| *of == id);
         answer.map_or(line.to_owned(), |(_, answer)| {
-            // Answer, who and when are the last columns but one.
+            // The answer, its author, its date and its reference are the last columns.
             let (rest, _) = line.rsplit_once(",,,,").expect("empty columns");
             format!("{rest},{answer},李娜,2026-11-22,邮件")
         })
@@ -221,7 +221,7 @@ fn a_sheet_goes_out_and_comes_back() {
             assert!(lamp.contains(line), "{lamp}");
         }
         assert_eq!(lamp.matches("confirmed:").count(), 4, "{lamp}");
-        // What is settled is passed over the next time.
+        // The second run skips settled questions.
         let run = project.fc(&["settle", "--from", "answers.csv"]).expect(2);
         assert!(run.stderr.contains("answers no open question"), "{run:#?}");
     }

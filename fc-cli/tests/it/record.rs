@@ -3,7 +3,7 @@
 use crate::support::Project;
 use crate::support::robot::Robot;
 
-/// The first bytes of a recording, and of its end.
+/// The first and the last bytes of a recording.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 fn is_whole(project: &Project, path: &str) -> bool {

@@ -1,4 +1,5 @@
-//! `fcproto release`, and what needs a release: `fcproto diff` without a version, `fcproto changelog`, `fcproto generate --as-of`.
+//! `fcproto release`, and commands that need a release: `fcproto diff` without a version, `fcproto changelog` and
+//! `fcproto generate --as-of`.
 
 mod waivers;
 
@@ -16,7 +17,7 @@ const NEW: &str = "
       kelvin: { type: u16, example: 4000, zh: 色温, en: Colour temperature }
 ";
 
-/// A project that has released version 7 of its spec.
+/// Creates a project that has released version 7 of its spec.
 fn released() -> Project {
     let project = Project::new();
     project
@@ -32,7 +33,7 @@ fn change(project: &Project, file: &str, from: &str, to: &str) {
     project.write(&path, &text.replacen(from, to, 1));
 }
 
-/// Puts a command behind the first group's `commands:`.
+/// Adds a command at the start of the first group.
 fn add_command(project: &Project) {
     change(
         project,
@@ -42,7 +43,7 @@ fn add_command(project: &Project) {
     );
 }
 
-/// Changes what is sent.
+/// Changes the wire format.
 fn break_it(project: &Project) {
     change(
         project,
@@ -320,7 +321,7 @@ First release, with 8 operations.
     );
     assert_eq!(project.files("spec"), before);
 
-    // Once more, and with zeros behind it, it is there already.
+    // The release exists already, also with trailing zeros.
     project.fc(&["release", "7"]).expect(0);
     let before = project.files("spec");
     for number in ["7", "7.0"] {
@@ -330,7 +331,7 @@ First release, with 8 operations.
     }
     assert_eq!(project.files("spec"), before);
 
-    // A version that was raised by hand is not lowered again.
+    // A version that was raised by hand stays.
     add_command(&project);
     change(
         &project,
@@ -384,7 +385,7 @@ fn a_spec_with_errors_is_not_released() {
 fn a_release_that_cannot_be_read_is_named() {
     let project = released();
     project.write("spec/releases/8.json", r#"{ "format": 99 }"#);
-    // What is not named by a number is no release.
+    // A file whose name is not a number is not a release.
     project.write("spec/releases/draft.json", "{}");
     for arguments in [
         &["diff"][..],
@@ -413,7 +414,7 @@ fn a_release_that_cannot_be_read_is_named() {
     assert!(run.stderr.contains("spec/releases"), "{run:#?}");
 }
 
-/// A directory that is called like a release is not taken for it.
+/// A directory with the name of a release is not used instead of it.
 #[test]
 fn a_release_counts_before_a_directory_of_its_name() {
     let project = released();
@@ -457,7 +458,7 @@ fn changelog_has_the_part_of_an_audience() {
             .stdout
     };
     assert!(!of("user_app").contains("get_warmth"));
-    // The last release does not know it yet.
+    // The last release does not contain the command.
     assert!(of("new_app").contains("- `get_warmth` (0x0108): Get the warmth\n"));
 }
 

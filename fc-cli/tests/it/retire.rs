@@ -2,7 +2,7 @@
 
 use crate::support::Project;
 
-/// A group of its own, so that nothing depends on what the project's spec says.
+/// A separate group, so that the tests do not depend on the content of the spec.
 const GROUP: &str = "\
 group: { id: fan, zh: 风扇, en: Fan }
 
@@ -143,7 +143,7 @@ fn retire_reports_uses_shared_and_missing_codes() {
     let project = project();
     let why = ["--zh", "无", "--en", "None"];
     let retire = |name| project.fc(&[&["retire", name][..], &why].concat());
-    // Another is deprecated for it.
+    // A deprecated command names it as its replacement.
     let run = retire("level_changed").expect(2);
     assert!(
         run.stderr.contains("the spec would have errors"),
@@ -152,7 +152,7 @@ fn retire_reports_uses_shared_and_missing_codes() {
     assert!(run.stderr.contains("level_changed"), "{run:#?}");
     let run = retire("turn_fans").expect(2);
     assert!(run.stderr.contains("did you mean `turn_fan`?"), "{run:#?}");
-    // A stream has the code of its command, which stays in use.
+    // A stream shares the code of its command, which stays in use.
     let run = retire("glow").expect(0);
     assert!(run.stdout.contains("retired glow\n"), "{run:#?}");
     let code = project.fc(&["codes", "0x0101"]).expect(0);

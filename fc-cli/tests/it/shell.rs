@@ -1,11 +1,11 @@
-//! What the command is to a shell: completions, manual pages, silence, exit statuses.
+//! The command in a shell: completions, manual pages, quiet output and exit statuses.
 
 use std::io::ErrorKind;
 use std::process::Command;
 
 use crate::support::{Project, Run, command, path_to_command};
 
-/// Words, and the completions of the last one.
+/// Words of a command line, and the completions of the last one.
 const CASES: &[(&[&str], &[&str])] = &[
     (&["call", "get_l"], &["get_level"]),
     (&["encode", "get_l"], &["get_level"]),
@@ -17,7 +17,7 @@ const CASES: &[(&[&str], &[&str])] = &[
         &["data.label="],
     ),
     (&["call", "set_level", "data.armed=t"], &["data.armed=true"]),
-    // As Bash cuts the words.
+    // Bash splits the words at `=`.
     (&["call", "set_level", "data.armed", ""], &["true", "false"]),
     (&["call", "set_level", "data.armed", "=", "t"], &["true"]),
     (
@@ -26,7 +26,7 @@ const CASES: &[(&[&str], &[&str])] = &[
     ),
 ];
 
-/// The commands, as the help lists them.
+/// Returns the commands that the help lists.
 fn commands(project: &Project) -> Vec<String> {
     let help = project.fc(&["--help"]).expect(0).stdout;
     let (_, list) = help.split_once("Commands:\n").expect("a list");
@@ -47,7 +47,7 @@ fn each_shell_has_a_script() {
     assert!(unknown.stderr.contains("bash"), "{unknown:#?}");
 }
 
-/// The completions of the last word.
+/// Returns the completions of the last word.
 fn completed(project: &Project, words: &[&str]) -> Vec<String> {
     let output = command(&[&["--", "fcproto"], words].concat())
         .env("COMPLETE", "zsh")
@@ -75,7 +75,7 @@ fn words_are_completed_by_the_spec() {
         found.retain(|word| !word.starts_with('-'));
         assert_eq!(found, *expected, "{words:?}");
     }
-    // A broken spec completes nothing.
+    // With a broken spec there are no completions.
     project.write("spec/types.yaml", "types: [");
     assert!(completed(&project, &["call", "get_l"]).is_empty());
 }
@@ -87,7 +87,7 @@ fn each_command_has_a_manual_page() {
     let commands = commands(&project);
     let pages = project.files("share/man1").len();
     assert_eq!(run.stdout, format!("wrote {pages} pages in share/man1\n"));
-    // `fcproto git` has commands of its own.
+    // `fcproto git` has subcommands with pages.
     assert!(pages > commands.len() + 1, "{pages}");
     for command in commands {
         let page = project.read(&format!("share/man1/fcproto-{command}.1"));
@@ -116,7 +116,7 @@ fn quiet_prints_errors_and_results() {
             "{call:?}"
         );
     }
-    // What was added has texts that are still to be written.
+    // The new command has texts that are still placeholders.
     let run = project.fc(&["check", "-q"]).expect(0);
     assert_eq!(run.stdout, "");
     assert!(run.stderr.contains("warning"), "{run:#?}");
@@ -139,13 +139,13 @@ fn warnings_change_the_status_for_who_denies_them() {
     }
 }
 
-/// What a shell makes of a script in a project, with the command on the `PATH`; nothing where there is no such shell.
+/// Runs a script in a project with the command on the `PATH`. Returns `None` if the shell is not installed.
 fn script(shell: &str, project: &Project, text: &str) -> Option<Run> {
     let output = Command::new(shell)
         .args(["-c", text])
         .env("PATH", path_to_command())
         .env("LC_ALL", "C")
-        // Nobody's own start-up files.
+        // The user's start-up files must not run.
         .env("ZDOTDIR", project.path(""))
         .env_remove("BASH_ENV")
         .env_remove("ENV")
@@ -170,7 +170,7 @@ fn bash_completes_a_call() {
     assert_eq!(run.expect(0).stdout, "true\n");
 }
 
-/// A name that a shell has for itself would be the shell's: `fc check` of bash succeeds, whatever the spec says.
+/// A shell prefers its built-in commands: `fc check` succeeds in bash, whatever the spec contains.
 #[test]
 fn no_script_goes_past_a_broken_spec() {
     const SCRIPT: &str = "set -e; fcproto check; echo reached";

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use crate::support::Project;
 
-/// A project with this `fc.yaml`, whose spec is in `protocol/`.
+/// Creates a project with this `fc.yaml` and its spec in `protocol/`.
 fn project(targets: &str) -> Project {
     let project = Project::new();
     std::fs::rename(project.path("spec"), project.path("protocol")).expect("moved");
@@ -33,7 +33,7 @@ fn project_is_found_from_a_subdirectory() {
     assert!(!project.path("fc-generated").exists());
     project.fc(&["generate", "--check"]).expect(0);
 
-    // What is no longer wanted goes.
+    // Files of removed targets disappear.
     project.write(
         "fc.yaml",
         "spec: protocol\ntargets: { schema: { out: schema } }\n",
@@ -89,7 +89,7 @@ fn plugin_gets_model_and_options_and_writes_files() {
     assert_eq!(run.stderr, "\"options\":{\"word\":\"hello\"}\n");
     assert_eq!(project.read("made/a/b.txt"), "one\n");
     project.fc(&["generate", "--check"]).expect(0);
-    // What it has got is a dump.
+    // The plugin has received a dump.
     project
         .fc(&["generate", "--check", "--from", "asked.json"])
         .expect(0);
@@ -137,12 +137,12 @@ fn a_plugin_that_fails_leaves_everything_as_it_was() {
     );
 }
 
-/// Without a `/` it is not looked for in the project, but where the system has its programs.
+/// A plugin without `/` in its name is a program on the `PATH`, not a file of the project.
 #[test]
 fn a_plugin_may_be_a_program_of_the_system() {
     let project = project("  mine: { plugin: cat, out: made }\n");
     program(&project, "cat", "#!/bin/sh\ncat > /dev/null\necho '[]'\n");
-    // It was run, and answered with what it was given: the dump, which is no list.
+    // `cat` returns its input, which is a dump and not a list.
     let run = project.fc(&["generate"]).expect(2);
     assert!(
         run.stderr.contains(
@@ -153,7 +153,7 @@ fn a_plugin_may_be_a_program_of_the_system() {
     assert!(!project.path("fc-manifest.json").exists());
 }
 
-/// The guide's own plugin, with the guide's own `fc.yaml`.
+/// Uses the plugin and the `fc.yaml` of the guide.
 #[test]
 fn the_plugin_of_the_guide_makes_a_header() {
     if Command::new("python3").arg("--version").output().is_err() {
@@ -211,7 +211,7 @@ fn names_are_free_in_the_languages_of_the_targets() {
     let message = "`Option` already has a meaning in Rust";
     assert!(run.stderr.contains(message), "{run:#?}");
 
-    // A dump of a project that does not make Rust may have such names.
+    // A dump of a project without a Rust target may contain such names.
     project.write(
         "fc.yaml",
         "spec: protocol\ntargets: { vectors: { out: made } }\n",
@@ -238,7 +238,7 @@ fn names_are_free_in_the_languages_of_the_targets() {
     );
 }
 
-/// The path counts from the project, wherever the command runs.
+/// The path of a plugin is relative to the project, wherever the command runs.
 #[test]
 fn plugin_path_is_relative_to_the_project() {
     let script = "#!/bin/sh\ncat > /dev/null\necho '[]'\n";
@@ -259,11 +259,11 @@ fn plugin_path_is_relative_to_the_project() {
     }
 }
 
-/// Its children hold what it prints to, and none of them is left.
+/// The children of a plugin keep its output open. They must end too.
 #[test]
 fn hanging_plugin_ends_with_its_children() {
     let scripts = [
-        // One that waits, one whose child waits, and ones that have ended before their child.
+        // The plugin waits, its child waits, or the plugin ends before its child.
         ("en", "exec sleep 1000"),
         ("zh", "sleep 1000 & wait"),
         ("en", "sleep 1000 &"),
@@ -288,7 +288,7 @@ fn hanging_plugin_ends_with_its_children() {
     }
 }
 
-/// Returns `true` if a process of this group runs. An ended process may wait for its parent.
+/// Returns `true` if a process of this group runs. An ended process may remain as a zombie.
 fn is_running(group: &str) -> bool {
     let output = Command::new("ps")
         .args(["-e", "-o", "pgid=,stat="])
@@ -313,7 +313,7 @@ fn the_output_of_a_plugin_is_limited() {
         let run = project.fc(&["generate", "--lang", lang]).expect(2);
         assert!(run.stderr.contains(message), "{run:#?}");
     }
-    // Exactly as long as it may be.
+    // This output has exactly the largest allowed length.
     program(&project, "mine", &format!("{start}printf '[%18s]' ''\n"));
     project.fc(&["generate"]).expect(0);
     program(&project, "mine", &format!("{start}printf '[%19s]' ''\n"));

@@ -1,4 +1,4 @@
-//! `fcproto proxy --view`, on a terminal of `script`.
+//! `fcproto proxy --view`, on a terminal that `script` provides.
 
 use crate::support::Project;
 use std::io::Write as _;

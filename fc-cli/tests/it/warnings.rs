@@ -1,4 +1,4 @@
-//! Packages of specs without one part or another compile without warnings.
+//! Packages of specs that lack some parts compile without warnings.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -92,7 +92,7 @@ streams:
       level: { type: u8, example: 1, zh: 音量, en: Level }
 ";
 
-/// Texts and their replacements.
+/// Strings and their replacements.
 type Changes = &'static [(&'static str, &'static str)];
 
 /// Names of packages, sections of the group, and changes of `protocol.yaml`.
@@ -172,7 +172,7 @@ const RANGES: &str = "  ranges:
     - { from: 0x0200, to: 0x02FF, use: reports, zh: 主动上报, en: Reports }
 ";
 
-/// A workspace with a package of each spec.
+/// Creates a workspace with a package for each spec.
 fn workspace() -> Project {
     let place = Project::empty();
     let mut members = String::new();

@@ -1,4 +1,4 @@
-//! `fcproto generate --watch`, driven by what it says: no test waits for a time.
+//! `fcproto generate --watch`. The tests react to its output and never wait for a fixed time.
 
 #![cfg(unix)]
 
@@ -11,12 +11,12 @@ use std::time::Duration;
 use crate::support::Project;
 
 const LAMP: &str = "spec/commands/lamp.yaml";
-/// What it says when it has done its work.
+/// The line that the command prints after its work.
 const WAITING: &str = "waiting for changes; Ctrl-C ends";
-/// How long a line may take before a test gives up.
+/// The time after which a missing line fails the test.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The command at work, and what it says on either stream.
+/// The running command, and the lines of both output streams.
 struct Watch {
     child: Child,
     lines: Receiver<String>,
@@ -42,7 +42,7 @@ impl Watch {
         }
     }
 
-    /// What it says until it waits again.
+    /// Returns the output up to the next wait.
     fn round(&self) -> String {
         let mut said = String::new();
         loop {
@@ -54,17 +54,17 @@ impl Watch {
         }
     }
 
-    /// Reads until a line has this in it.
+    /// Reads the output until a line contains `wanted`.
     fn until(&self, wanted: &str) {
         until(&self.lines, wanted);
     }
 
-    /// The same of what is wrong.
+    /// Reads the errors until a line contains `wanted`.
     fn complains(&self, wanted: &str) {
         until(&self.complaints, wanted);
     }
 
-    /// Presses Ctrl-C; gives the exit status.
+    /// Sends Ctrl-C and returns the exit status.
     fn interrupt(mut self) -> Option<i32> {
         let id = self.child.id().to_string();
         let sent = Command::new("kill").args(["-INT", &id]).status();
@@ -73,7 +73,7 @@ impl Watch {
     }
 }
 
-/// The lines of a stream as they come.
+/// Returns the lines of a stream as they arrive.
 fn lines_of(stream: impl Read + Send + 'static) -> Receiver<String> {
     let (sender, lines) = channel();
     std::thread::spawn(move || {
@@ -95,7 +95,7 @@ fn until(lines: &Receiver<String>, wanted: &str) {
     }
 }
 
-/// Writes a file as many editors do: beside its place, then renamed, so that it is never seen half.
+/// Saves a file as many editors do: it writes a new file and renames it, so that readers never see half of it.
 fn save(project: &Project, path: &str, text: &str) {
     project.write("elsewhere", text);
     std::fs::rename(project.path("elsewhere"), project.path(path)).expect("renamed");
@@ -109,7 +109,7 @@ fn watch_generates_after_each_change_until_ctrl_c() {
     assert!(said.contains("created "), "{said}");
     assert!(project.path("spec/fc-spec.schema.json").is_file());
 
-    // What was written into `spec` is no change of the spec: what comes next is ours.
+    // The files that the command wrote into `spec` do not count as a change. The next change is the one below.
     let lamp = project.read(LAMP);
     save(&project, LAMP, &lamp.replace("0x0104", "0x0109"));
     let said = watch.round();
@@ -119,7 +119,7 @@ fn watch_generates_after_each_change_until_ctrl_c() {
     );
     assert!(said.contains("updated    1 file\n"), "{said}");
 
-    // A remark changes nothing that is made. The line comes in one piece.
+    // A comment changes no generated file. The change is reported as one line.
     project.append("spec/types.yaml", "# A remark.\n");
     let said = watch.round();
     assert!(said.contains("changed    spec/types.yaml\n"), "{said}");
@@ -174,7 +174,7 @@ fn files_and_the_directory_go_and_come_back() {
     std::fs::rename(&away, &spec).expect("renamed");
     watch.until("new        spec/types.yaml");
     watch.until(WAITING);
-    // It is watched again.
+    // The new directory is watched again.
     std::fs::remove_file(project.path("spec/types.yaml")).expect("removed");
     watch.until("gone       spec/types.yaml");
     watch.complains("error");

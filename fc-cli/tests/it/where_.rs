@@ -2,7 +2,7 @@
 
 use crate::support::Project;
 
-/// A group of its own, so that nothing depends on what the project's spec says.
+/// A separate group, so that the tests do not depend on the content of the spec.
 const GROUP: &str = "\
 group: { id: lamp, zh: 灯, en: Lamp }
 commands:
@@ -26,7 +26,7 @@ fn a_name_or_code_leads_to_its_place() {
     for name in ["get_lamp_colour", "0x7F01"] {
         let run = project.fc(&["where", name]).expect(0);
         assert_eq!(run.stdout, operation, "{name}");
-        // The code may be in no range: that is for `fcproto check` to say.
+        // The code may be outside of all ranges. Only `fcproto check` reports that.
         assert_eq!(run.stderr, "", "{name}");
     }
     for name in ["lampHue", "GetLampColourResponse.lampHue"] {

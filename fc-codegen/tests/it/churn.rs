@@ -1,5 +1,5 @@
-//! How many files a small addition changes: all about an operation is in the files of its group, so that a review reads
-//! few files a language, and two branches that add to different groups hardly meet.
+//! Lists the files that a small addition changes. The files of a group contain everything about its operations, so a
+//! review reads few files per language. Two branches that add to different groups rarely touch the same file.
 
 use crate::good_spec;
 use fc_codegen::emit::{generate, kotlin};
@@ -10,7 +10,7 @@ use fc_spec::model::{Lang, Model};
 use fc_spec::source::Sources;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A group beside that of the good spec, which has one of everything.
+/// A second group next to the good spec, with an operation of each kind.
 const LAMP: &str = "\
 group: { id: lamp, zh: 灯, en: Lamp }
 commands:
@@ -28,14 +28,14 @@ streams:
   lamp_picture: { code: 0x0511, zh: 灯的图片, en: Picture of the lamp, from: robot, content: image/png, source: { sections: [] } }
 ";
 
-/// The group with the keys of one more operation at the top of a section.
+/// Returns the group with another operation at the top of a section.
 fn with(section: &str, operation: &str) -> String {
     let head = format!("{section}:\n");
     assert!(LAMP.contains(&head), "{section}");
     LAMP.replace(&head, &format!("{head}{operation}\n"))
 }
 
-/// The model of the good spec with this group.
+/// Returns the model of the good spec with this group.
 fn model(lamp: &str) -> Model {
     let good = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
     let lamp = ("spec/commands/lamp.yaml".to_owned(), lamp.to_owned());
@@ -45,7 +45,7 @@ fn model(lamp: &str) -> Model {
     model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
 }
 
-/// Everything that is made of it, by path.
+/// Returns all generated files by their paths.
 fn made(lamp: &str) -> BTreeMap<String, String> {
     let artifacts =
         generate(&model(lamp), &Targets::default()).expect("every target can be written");
@@ -53,7 +53,7 @@ fn made(lamp: &str) -> BTreeMap<String, String> {
     artifacts.map(|it| (it.path, it.contents)).collect()
 }
 
-/// What an addition changes and makes, of every language.
+/// Returns the files that an addition changes or creates, in all languages.
 fn changed(before: &BTreeMap<String, String>, lamp: &str) -> BTreeSet<String> {
     let after = made(lamp);
     let paths = before.keys().chain(after.keys());
@@ -61,7 +61,7 @@ fn changed(before: &BTreeMap<String, String>, lamp: &str) -> BTreeSet<String> {
     paths.cloned().collect()
 }
 
-/// What any addition changes.
+/// Files that every addition changes.
 const ALWAYS: [&str; 18] = [
     "docs-site/en/reference/index.md",
     "docs-site/reference/index.md",
@@ -120,7 +120,7 @@ fn addition_changes_its_group_and_the_indexes() {
     }
 }
 
-/// The file of a group is called like the group, unless a file of the package is.
+/// A group's file has the name of the group, unless a file of the package has it already.
 #[test]
 fn group_may_have_the_name_of_a_kotlin_part() {
     for (id, file) in [

@@ -1,4 +1,4 @@
-//! Comments in a package have the languages of its target.
+//! Comments in a package use the languages of its target.
 
 use crate::docs_support;
 use fc_codegen::emit::generate;
@@ -83,7 +83,7 @@ const COMMENTS: &[(Product, [&str; 2])] = &[
     ),
 ];
 
-/// Returns the packages of a model; `settings` belong to each target.
+/// Returns the packages of a model. `settings` apply to each target.
 fn packages(model: &Model, texts: &str, settings: &str) -> Vec<Artifact> {
     let targets = PACKAGES.map(|it| format!("  {}: {{ {settings} }}\n", it.name()));
     let yaml = format!("{texts}\ntargets:\n{}  markdown:\n", targets.concat());
@@ -96,7 +96,7 @@ fn is_chinese(character: char) -> bool {
     ('\u{2E80}'..='\u{9FFF}').contains(&character) || character >= '\u{FF00}'
 }
 
-/// Replaces every Chinese text of a dump by the English one, and Chinese characters in other values by letters.
+/// Replaces every Chinese text of a dump by its English text, and Chinese characters in other values by letters.
 fn translate(value: &mut Value) {
     if let Value::Object(members) = value
         && let Some(en) = members.get("en").cloned()

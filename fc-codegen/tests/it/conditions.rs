@@ -1,4 +1,4 @@
-//! Composed messages are as the conditions of their fields say.
+//! Sample messages follow the conditions of their fields.
 
 use crate::docs_support::{fixture, model, project};
 use fc_reflect::sample::{Profile, Samples};
@@ -38,7 +38,7 @@ fn sample_has_a_field_if_its_condition_holds() {
     assert_eq!(seen.len(), 2 * profiles.len(), "{seen:?}");
 }
 
-/// What a required field says while its condition does not hold is shown all the same: it is sent.
+/// A sample includes a required field even if its condition does not hold, because the field is always sent.
 #[test]
 fn a_required_field_is_always_there() {
     let model = model(&fixture());

@@ -1,8 +1,8 @@
 //! Counts the sentences of the project that have a construction of `words/constructions.yaml`, by area. Each number in
 //! `words/counts.yaml` may only fall.
 //!
-//! The texts of the spec are its owner's: neither `spec/` nor files generated from it count. Text that the generator
-//! writes itself is counted in the output for the spec of `tests/docs`.
+//! The owner of the spec writes its texts, so neither `spec/` nor files generated from it count. The output for the
+//! spec of `tests/docs` shows the text that the generator itself writes.
 
 mod matcher;
 mod texts;
@@ -19,7 +19,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use texts::{comments, ending, literals, marks, prose, test_names};
 
-/// Part of a file that is read.
+/// The part of a file to read.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Part {
     /// The prose of Markdown.
@@ -32,7 +32,7 @@ enum Part {
     TestNames,
 }
 
-/// An area, the part of its files that counts, and its places from the root of the project.
+/// An area, the part of its files that counts, and its paths from the root of the project.
 type Area = (&'static str, Part, &'static [&'static str]);
 
 const AREAS: [Area; 31] = [
@@ -159,10 +159,10 @@ const AREAS: [Area; 31] = [
     ),
 ];
 
-/// The area that is generated here instead of read.
+/// The area whose text the test generates.
 const GENERATED: &str = "generated text";
 
-/// Directories that are not the project's own text.
+/// Directories without text of the project.
 const SKIPPED: [&str; 8] = [
     "node_modules",
     "target",
@@ -174,7 +174,7 @@ const SKIPPED: [&str; 8] = [
     "generated",
 ];
 
-/// Returns `true` if files with this ending have such parts.
+/// Returns `true` if files with this ending have such a part.
 fn is_read(part: Part, ending: Option<&str>) -> bool {
     match part {
         Part::Prose => ending == Some("md"),
@@ -201,7 +201,7 @@ fn files(path: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// The sentences of an area that count.
+/// Returns the sentences of an area that count.
 fn found(matcher: &Matcher, (_, part, places): &Area) -> Vec<String> {
     let root = project();
     let mut paths = Vec::new();
@@ -235,7 +235,8 @@ fn found(matcher: &Matcher, (_, part, places): &Area) -> Vec<String> {
     paths.par_iter().flat_map_iter(read).collect()
 }
 
-/// The sentences that count in the output for the spec of `tests/docs`. The errors have an area of their texts.
+/// Returns the sentences that count in the output for the spec of `tests/docs`. Pages about errors belong to another
+/// area.
 fn found_in_generated(matcher: &Matcher) -> Vec<String> {
     let artifacts = emit::generate(&model(&fixture()), &Targets::default()).unwrap();
     let read = |artifact: Artifact| {

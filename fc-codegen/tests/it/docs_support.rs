@@ -1,4 +1,4 @@
-//! What the tests of pages, vectors and samples share.
+//! Helpers for the tests of pages, vectors and samples.
 
 use fc_codegen::product::Artifact;
 use fc_spec::diagnostic::{Faults, Format, render};
@@ -7,17 +7,17 @@ use fc_spec::model::{Lang, Model};
 use fc_spec::syntax::read_dir;
 use std::path::{Path, PathBuf};
 
-/// A project whose `spec/` uses every corner of the language once.
+/// Returns a project whose `spec/` uses every part of the language once.
 pub fn fixture() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/docs")
 }
 
-/// This project.
+/// Returns the root of this project.
 pub fn project() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The model of a project's spec, which has no faults.
+/// Returns the model of a project's spec, which must have no errors.
 pub fn model(root: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root, Path::new("spec"), &mut faults);
@@ -26,7 +26,7 @@ pub fn model(root: &Path) -> Model {
     model.unwrap_or_else(|| panic!("{shown}"))
 }
 
-/// The artifact with this path.
+/// Returns the contents of the artifact with this path.
 pub fn artifact<'a>(artifacts: &'a [Artifact], path: &str) -> &'a str {
     let found = artifacts.iter().find(|artifact| artifact.path == path);
     &found
@@ -34,7 +34,7 @@ pub fn artifact<'a>(artifacts: &'a [Artifact], path: &str) -> &'a str {
         .contents
 }
 
-/// Compares with a golden file; with `BLESS=1` in the environment, writes it.
+/// Compares with a golden file. `BLESS=1` in the environment writes the file first.
 pub fn golden(name: &str, actual: &str) {
     let path = fixture().join("golden").join(name);
     if std::env::var_os("BLESS").is_some() {

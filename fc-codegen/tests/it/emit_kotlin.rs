@@ -1,4 +1,4 @@
-//! What the Kotlin package has of a spec, whatever that is: nothing is forgotten, and the runtime is told of no protocol.
+//! The imports and the comment links of the Kotlin package have targets, and its runtime depends on no protocol.
 
 use fc_codegen::product::Product;
 use std::collections::HashSet;
@@ -24,7 +24,7 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// No import is missing: the names that files use of the runtime are those that it has.
+/// Every name that a file imports from the runtime is declared there.
 #[test]
 fn what_is_imported_is_there() {
     let place = root().join(Product::Kotlin.usual_place());
@@ -47,8 +47,8 @@ fn what_is_imported_is_there() {
     }
 }
 
-/// Links in comments lead somewhere: what is named there is of the package or imported, or has its full name, since an import that
-/// comments alone use is refused by compilers that deny warnings.
+/// Every link in a comment has a target. The target is in the package, is imported, or has its full name. An import
+/// that only comments use would not do, because compilers that deny warnings refuse it.
 #[test]
 fn targets_of_comment_links_exist() {
     let place = root().join(Product::Kotlin.usual_place());
@@ -80,7 +80,7 @@ fn targets_of_comment_links_exist() {
     assert!(lost.is_empty(), "{}", lost.join("\n"));
 }
 
-/// What a line of a comment links to: `[Name]`, and the class behind `@throws`.
+/// Returns the links of a comment line: `[Name]`, and the class after `@throws`.
 fn links(line: &str) -> Vec<&str> {
     let trimmed = line.trim_start();
     if !(trimmed.starts_with('*') || trimmed.starts_with("/**")) {
@@ -88,7 +88,7 @@ fn links(line: &str) -> Vec<&str> {
     }
     let thrown = trimmed.strip_prefix("* @throws ");
     let thrown = thrown.and_then(|rest| rest.split_whitespace().next());
-    // Outside code spans.
+    // Skips code spans.
     let prose = trimmed.split('`').step_by(2);
     let linked = prose
         .flat_map(|part| part.split('[').skip(1))
@@ -103,7 +103,7 @@ fn links(line: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The names of all classes and their members that are declared.
+/// Returns the names of all declared classes and members.
 fn declared(files: &[(PathBuf, String)]) -> HashSet<String> {
     let mut names = HashSet::new();
     for line in files.iter().flat_map(|(_, text)| text.lines()) {
@@ -118,7 +118,7 @@ fn declared(files: &[(PathBuf, String)]) -> HashSet<String> {
     names
 }
 
-/// The runtime is anybody's: it names no protocol.
+/// The runtime serves any protocol, so it imports none.
 #[test]
 fn the_runtime_knows_no_protocol() {
     let place = root().join(Product::Kotlin.usual_place());

@@ -1,4 +1,5 @@
-//! The reference pages: golden, whole and safe.
+//! The reference pages match their golden files, their links and tables are complete, and they contain no code of the
+//! spec.
 
 use crate::docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::markdown;
@@ -10,7 +11,7 @@ use serde_yaml::{Mapping, Value};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-/// One page of each kind, and what is peculiar about some operations.
+/// One page of each kind, and operations with special features.
 const GOLDEN: [&str; 18] = [
     "index.md",
     "wire.md",
@@ -48,7 +49,7 @@ fn pages_are_as_they_were() {
     golden("navigation.json", navigation);
 }
 
-/// What a page says of how sure it is, by the state of each fact.
+/// A page shows the state of each fact: confirmed, inferred, stated or open.
 #[test]
 fn a_page_says_how_sure_each_fact_is() {
     let artifacts = markdown::emit(&model(&fixture()), &Targets::default());
@@ -72,7 +73,7 @@ fn a_page_says_how_sure_each_fact_is() {
                 "| effect | open |",
                 "treat it as a command that moves the robot",
             ],
-            // Its badge is that of the effect, and not another one for the same.
+            // The badge of the effect appears once.
             &["effect: open", "all stated", "Reads only", "type: inferred"],
         ),
         (
@@ -80,7 +81,7 @@ fn a_page_says_how_sure_each_fact_is() {
             &["all stated", "| effect | stated |"],
             &[": inferred", ": open"],
         ),
-        // New in the spec: there is no source to be sure of.
+        // The command is new in the spec, so it has no source.
         (
             "commands/dim",
             &["code: open"],
@@ -153,7 +154,7 @@ fn assert_straight(page: &Artifact) {
     }
 }
 
-/// Outside of fences, Vue must see no expression and no tag but the few that the pages use themselves.
+/// Outside of fences, Vue must find no expression. It must find no tags except those that the pages use.
 #[test]
 fn pages_contain_no_vue_code() {
     for page in pages() {
@@ -174,15 +175,15 @@ fn assert_no_code(page: &Artifact) {
         "<div class=\"fc-question\"",
         "</div>",
     ];
-    // The front matter is no Markdown.
+    // The front matter is not Markdown.
     let body = page.contents.splitn(3, "---\n").last().unwrap_or_default();
     for line in outside_fences(body) {
-        // Vue reads code spans as well, fences alone are left to themselves.
+        // Vue reads code spans too. It skips fences only.
         assert!(!line.contains("{{"), "{}: {line}", page.path);
         let text = without_code(line);
         let unescaped = text.replace("\\{", "");
         assert!(!unescaped.contains('{'), "{}: {line}", page.path);
-        // Two of them would meet.
+        // Markdown would turn two adjacent escapes into `{{`.
         assert!(!text.contains("\\{\\{"), "{}: {line}", page.path);
         for (at, _) in text.match_indices('<') {
             let tag = text.get(at..).unwrap_or_default();
@@ -220,7 +221,7 @@ fn assert_closed(page: &Artifact) {
     );
 }
 
-/// Texts that would leave their place in Markdown, in HTML, for Vue or for `VitePress`.
+/// Texts that try to break out of Markdown, HTML, Vue or `VitePress`.
 const HOSTILE: [&str; 5] = [
     "<!--@include: ../../../secret.txt--> `<!-- @include: ../../../secret.txt -->` </script> {{ 7 * 7 }} {\\{ 7 * 7 }}",
     "<img src=x onerror=alert(1)> &#123;&#123; 7 * 7 }} \\`<b>` a | b ] [ ](x) {0} {1} {2} \"><b> #",
@@ -229,7 +230,7 @@ const HOSTILE: [&str; 5] = [
     "a\n\n# b\n::: tip\n---\n[c]: d\n```\n<!--@include: x-->\n```\nb",
 ];
 
-/// Characters that do not show. Reading a spec may refuse them instead.
+/// Invisible characters. The reader of a spec may refuse them instead.
 const INVISIBLE: &str = "\u{202e}\0\u{1b}[31m\u{2028}\u{fdd0}\u{e0001}";
 
 #[test]
@@ -266,7 +267,7 @@ fn hostile_texts_stay_in_their_place() {
     }
 }
 
-/// Adds a text to every text of a dump.
+/// Appends a text to every text of a dump.
 fn spoil(value: &mut Json, text: &str) {
     match value {
         Json::Object(entries) => {
@@ -289,13 +290,13 @@ fn is_page(artifact: &Artifact) -> bool {
         .is_some_and(|extension| extension == "md")
 }
 
-/// Pages of the fixture and of the project.
+/// Returns the pages of the fixture and of the project.
 fn pages() -> Vec<Artifact> {
     let all = [fixture(), project()].map(|root| markdown::emit(&model(&root), &Targets::default()));
     all.into_iter().flatten().filter(is_page).collect()
 }
 
-/// The lines of a page that are no code, neither in a fence nor as HTML.
+/// Returns the lines of a page that are not code, neither in a fence nor in HTML.
 fn outside_fences(contents: &str) -> impl Iterator<Item = &str> {
     let mut open: Option<&str> = None;
     let mut in_html = false;
@@ -314,7 +315,7 @@ fn outside_fences(contents: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// A line without its code spans. An escaped backtick opens none.
+/// Removes the code spans of a line. An escaped backtick starts no span.
 fn without_code(line: &str) -> String {
     let mut out = String::new();
     let mut rest = line;
@@ -335,7 +336,7 @@ fn without_code(line: &str) -> String {
     out + rest
 }
 
-/// Targets of the links of a page.
+/// Returns the targets of a page's links.
 fn links(contents: &str) -> Vec<String> {
     let mut links = Vec::new();
     for line in outside_fences(contents) {
@@ -347,7 +348,7 @@ fn links(contents: &str) -> Vec<String> {
     links
 }
 
-/// What can be linked to on a page.
+/// Returns the anchors of a page.
 fn anchors(contents: &str) -> HashSet<String> {
     let ids = contents.split("<a id=\"").skip(1);
     let mut anchors = HashSet::new();
@@ -376,7 +377,7 @@ fn follow(
     }
 }
 
-/// The spec's files with their paths from the root.
+/// Returns the spec's files with their paths from the root.
 fn spec_files(root: &Path) -> impl Iterator<Item = (String, Value)> + use<> {
     let spec = root.join("spec");
     let files =
@@ -402,7 +403,7 @@ fn spec_files(root: &Path) -> impl Iterator<Item = (String, Value)> + use<> {
         })
 }
 
-/// Names of places in a file of the spec: its sections, their entries, the ids of its answers.
+/// Returns the names of places in a file of the spec: its sections, their entries and the IDs of its answers.
 fn places(file: &Value) -> HashSet<String> {
     let mut names = HashSet::new();
     for (section, entries) in file.as_mapping().into_iter().flatten() {
@@ -428,7 +429,7 @@ fn places(file: &Value) -> HashSet<String> {
     names
 }
 
-/// The first id of each answer.
+/// Finds the first ID of each answer.
 fn answered(value: &Value, found: &mut impl FnMut(&str)) {
     match value {
         Value::Mapping(entries) => {
@@ -442,7 +443,7 @@ fn answered(value: &Value, found: &mut impl FnMut(&str)) {
     }
 }
 
-/// A relative path from a page, as a path from the root.
+/// Resolves a relative path of a page to a path from the root.
 fn resolve(from: &str, path: &str) -> Result<String, String> {
     let mut parts: Vec<&str> = from.split('/').collect();
     parts.pop();

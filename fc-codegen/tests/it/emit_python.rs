@@ -1,5 +1,5 @@
-//! Generated Python: what is said of a spec, in which file. That it is laid out as the formatter would and passes the type
-//! checkers is checked beside the package, where Python is.
+//! The content and the files of generated Python. Tests of the package itself check its format and its types, because
+//! they need Python.
 
 use crate::good_spec;
 use fc_codegen::emit::python;
@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-/// The good spec with one more file of commands.
+/// Returns the good spec with another file of commands.
 fn with(text: &str) -> Model {
     let good = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
     let more = ("spec/commands/more.yaml".to_owned(), text.to_owned());
@@ -32,7 +32,7 @@ fn files(model: &Model) -> HashMap<String, String> {
     files.map(|it| (path(it.path), it.contents)).collect()
 }
 
-/// Each fixture of `python/` says in comments at its top what must stand in which file: `# in src/demo/client.py: …`.
+/// Comments at the top of each fixture in `python/` list the expected text and its file: `# in src/demo/client.py: …`.
 #[test]
 fn fixtures_are_generated_as_expected() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
@@ -62,7 +62,7 @@ fn the_same_model_gives_the_same_bytes() {
     assert_eq!(emit(), emit());
 }
 
-/// What the language says of behaviour that no type can say, where a programmer reads it.
+/// Comments state facts about behaviour that no type can express.
 #[test]
 fn comments_state_facts_without_a_type() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-generated/tests/meter");

@@ -1,4 +1,4 @@
-//! Generated Rust is laid out as rustfmt would and parses, for the real spec and for an odd one.
+//! Generated Rust parses and has the format of rustfmt, for the real spec and for an unusual one.
 
 use fc_codegen::emit::rust;
 use fc_codegen::product::Artifact;
@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Folders with a `spec` in them.
+/// Returns folders that contain a `spec`.
 fn projects() -> [PathBuf; 2] {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     [root.to_owned(), root.join("fc-generated/tests/odd")]
@@ -40,7 +40,7 @@ fn rustfmt_has_nothing_to_change() {
     for project in projects() {
         let folder = tempfile::tempdir().unwrap();
         for Artifact { path, contents, .. } in rust::emit(&model(&project), &Targets::default()) {
-            // Without the line that keeps rustfmt away from the committed files.
+            // Removes the line that prevents rustfmt from formatting the committed files.
             let (head, rest) = contents
                 .split_once("#![cfg_attr(rustfmt, rustfmt_skip)]\n\n")
                 .unwrap();
@@ -73,7 +73,7 @@ fn the_same_model_gives_the_same_bytes() {
     }
 }
 
-/// What the language says of behaviour that no type can say, where a programmer reads it.
+/// Comments state facts about behaviour that no type can express.
 #[test]
 fn comments_state_facts_without_a_type() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();

@@ -1,4 +1,4 @@
-//! What the TypeScript package says of a type and of a field, the one beside the other.
+//! The type and the schema of each field in the TypeScript package.
 
 use crate::good_spec;
 use fc_codegen::emit::typescript;
@@ -9,7 +9,7 @@ use fc_spec::model::{Lang, Model};
 use fc_spec::source::Sources;
 use std::collections::BTreeMap;
 
-/// The good spec with one more file of commands.
+/// Returns the good spec with another file of commands.
 fn model(text: &str) -> Model {
     let good = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
     let more = ("spec/commands/more.yaml".to_owned(), text.to_owned());
@@ -19,7 +19,7 @@ fn model(text: &str) -> Model {
     model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
 }
 
-/// The files of the package, by their paths below `generated`.
+/// Returns the files of the package by their paths in `generated`.
 fn emitted(model: &Model) -> BTreeMap<String, String> {
     let artifacts = typescript::emit(model, &Targets::default()).into_iter();
     let artifacts = artifacts.map(|it| {
@@ -29,7 +29,7 @@ fn emitted(model: &Model) -> BTreeMap<String, String> {
     artifacts.collect()
 }
 
-/// A group with a command whose request has these fields, and these types.
+/// Returns a group with these types and with a command whose request has these fields.
 fn group(fields: &str, types: &str) -> String {
     format!(
         "\
@@ -50,7 +50,7 @@ types:
     )
 }
 
-/// The line of a file that begins so.
+/// Returns the line of a file that starts with `start`.
 fn line<'t>(text: &'t str, start: &str) -> &'t str {
     let line = text.lines().find(|line| line.trim().starts_with(start));
     line.unwrap_or_else(|| panic!("no line starts with `{start}`:\n{text}"))
@@ -179,7 +179,7 @@ fn enums_are_open_unless_they_are_closed() {
     }
 }
 
-/// One command more is one more of everything.
+/// A new command appears in every file that lists commands.
 #[test]
 fn a_command_is_in_every_file_that_commands_are_in() {
     let files = emitted(&model(&group(

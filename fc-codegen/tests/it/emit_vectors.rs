@@ -1,7 +1,7 @@
-//! The golden frames, read by a second, independent reader.
+//! Reads the golden frames with a second, independent reader.
 //!
-//! The reader below knows the two layouts by heart: it shares no line with the composer, so that a
-//! mistake in one does not hide in the other.
+//! The reader has two fixed layouts and shares no code with the composer. A mistake in one therefore does not hide in
+//! the other.
 
 use crate::docs_support::{artifact, fixture, golden, model, project};
 use fc_codegen::emit::vectors;
@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::io::Read as _;
 
-/// Where a layout keeps what.
+/// The offsets and values of a layout.
 struct Layout {
     header: usize,
     big_endian: bool,
@@ -73,7 +73,7 @@ const LAMP: Layout = Layout {
     zero_plain_length: false,
 };
 
-/// What a frame holds.
+/// The content of a frame.
 struct Opened {
     response: bool,
     kind: u8,
@@ -82,7 +82,7 @@ struct Opened {
 }
 
 impl Layout {
-    /// Reads a frame that is all of the input, or names its error.
+    /// Reads a frame that fills the whole input, or returns the name of its error.
     fn open(&self, frame: &[u8]) -> Result<Opened, &'static str> {
         let head = self.heads.iter().position(|head| frame.starts_with(head));
         let begins = self.heads.iter().any(|head| head.starts_with(frame));
@@ -210,8 +210,8 @@ fn every_vector_is_what_it_says() {
 
 const BODIES: &str = "fc-generated/vectors/bodies.json";
 
-/// Bodies are refused as no JSON exactly where another reader of the grammar refuses them, and every
-/// rule is shown from both sides.
+/// A vector has an error of JSON syntax exactly if another reader of the grammar refuses its body. Every rule has
+/// accepted and refused vectors.
 #[test]
 fn bodies_are_what_they_say() {
     const OF_THE_TEXT: [&str; 3] = ["not_utf8", "bad_json", "not_an_object"];
@@ -235,7 +235,7 @@ fn bodies_are_what_they_say() {
     }
 }
 
-/// What is wrong with a body, whatever its keys.
+/// Returns the syntax error of a body, whatever its keys are.
 fn grammar_fault(bytes: &[u8]) -> Option<&'static str> {
     let text = match std::str::from_utf8(bytes) {
         Ok("") => return None,
@@ -257,7 +257,7 @@ fn every_side_of_every_operation_has_its_cases() {
 }
 
 fn every_side_has_its_cases(model: &Model) {
-    // Bytes of a stream are no JSON, and nobody answers them.
+    // The bytes of a stream are not JSON, and streams have no response.
     const JSON: (&[&str], &[&str]) = (
         &["request", "response"],
         &[
@@ -272,7 +272,7 @@ fn every_side_has_its_cases(model: &Model) {
     const BYTES: (&[&str], &[&str]) = (&["request"], &["plain", "gzip", "bad_digest"]);
     let artifacts = vectors::emit(model, &Targets::default());
     for operation in &model.operations {
-        // Without a code there is no frame.
+        // An operation without a code has no frame.
         if operation.kind() == Kind::Stream && operation.code.value.is_none() {
             continue;
         }
@@ -300,7 +300,7 @@ fn every_side_has_its_cases(model: &Model) {
     }
 }
 
-/// The JSON of each profile, where the constraints of a field show.
+/// Compares the JSON of each profile, which shows the constraints of a field.
 #[test]
 fn samples_keep_to_the_constraints() {
     let model = model(&fixture());
@@ -391,7 +391,7 @@ fn rejected(layout: &Layout, model: &Model, entry: &Value, place: &str) {
             Err(_) => "bad_json",
             Ok(value) if !value.is_object() => "not_an_object",
             Ok(value) if depth(&value) > model.limits.json_depth as usize => "too_deep",
-            // The rest takes the types; the generated crate's tests read these.
+            // The other errors depend on types, and the tests of the generated crate check them.
             Ok(_) => {
                 return assert!(
                     !["not_utf8", "bad_json", "not_an_object", "too_deep"].contains(&wanted)

@@ -1,5 +1,5 @@
-//! An emitter spells the decisions of `package`. It declares no `Group`, and reads no word of the vocabulary that
-//! `package` turns into names and values.
+//! An emitter spells the decisions of `package`. It declares no `Group`. It reads no vocabulary word that `package`
+//! turns into names and values.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ const WORDS: [&str; 5] = [
     "struct Group ",
 ];
 
-/// Returns the texts of an emitter's files: the sources, and then the templates.
+/// Returns the sources of an emitter and its templates, each as one string.
 fn texts(emitter: &str) -> [String; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("src/emit")
@@ -37,7 +37,7 @@ fn every_template_is_used_and_every_used_one_exists() {
         let names = templates.lines().filter_map(|it| it.strip_prefix("---- "));
         let names: Vec<&str> = names.collect();
         let is_named = |name: &str| sources.contains(&format!("\"{name}\""));
-        // The list of all operations of a kind has its name from the kind.
+        // The name of an `all_…` template is built from a kind.
         let is_unused = |name: &&&str| !is_named(name) && !name.starts_with("all_");
         assert_eq!(names.iter().find(is_unused), None, "{emitter}");
         for call in [".template(\"", ".head(\""] {
@@ -59,7 +59,7 @@ fn emitters_read_no_word_that_package_spells() {
         for file in files {
             let path = file.expect("it can be read").path();
             let text = fs::read_to_string(&path).expect("it is a source");
-            // A quirk of the header is not one of a field, and a name decides nothing.
+            // A quirk of the header is not a quirk of a field. Reading a name makes no decision.
             let text = text
                 .replace("HeaderQuirk::", "")
                 .replace("ResultRole::name", "");

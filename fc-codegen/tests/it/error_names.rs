@@ -1,4 +1,4 @@
-//! The page on the wire names the errors of `conformance/errors.json`, all that any implementation must have and no others.
+//! The page about the wire names exactly the errors of `conformance/errors.json` that every implementation must have.
 
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ fn read(path: &str) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// The words of a line that are written as code.
+/// Returns the code spans of a line.
 fn quoted(line: &str) -> impl Iterator<Item = String> {
     line.split('`').skip(1).step_by(2).map(str::to_owned)
 }
@@ -24,8 +24,8 @@ fn the_page_on_the_wire_names_the_errors_of_the_table() {
         .map(|error| error["name"].as_str().unwrap().to_owned())
         .collect();
     let template = read("src/emit/markdown/templates/wire.md.j2");
-    // The order of checks is a table whose first cell is a number, or counts the steps that a protocol has; the
-    // names of bodies are in one line.
+    // The order of checks is a table. The first cell of a row is a number or the step counter of the template. One line
+    // lists the errors of bodies.
     let is_check = |line: &str| {
         let first = line.strip_prefix("| ");
         first.is_some_and(|first| {

@@ -1,5 +1,5 @@
 //! `conformance/features.yaml` names a test or a reason for each feature in each language. The page that compares the
-//! packages has the table.
+//! packages shows the same table.
 
 use crate::docs_support::project;
 use regex_lite::{Captures, Regex};
@@ -27,7 +27,7 @@ struct Feature {
 }
 
 impl Feature {
-    /// The cells in the order of [`LANGUAGES`].
+    /// Returns the cells in the order of [`LANGUAGES`].
     fn cells(&self) -> [&Cell; 6] {
         [
             &self.rust,
@@ -189,7 +189,7 @@ fn the_page_has_the_table() {
     }
 }
 
-/// The counters of the packages that have all of them: file, class, and the pattern of a name.
+/// The counters of packages that have all client counters: file, class, and the pattern of a name.
 const CLIENT_COUNTERS: [(&str, &str, &str); 4] = [
     (
         "stubs/typescript/src/client/counters.ts",
@@ -249,7 +249,7 @@ fn counters((file, class, name): (&str, &str, &str)) -> BTreeSet<String> {
     name.captures_iter(body).map(|it| snake(&it[1])).collect()
 }
 
-/// In TypeScript and Python, the platform makes the handshakes, so their packages do not count them.
+/// In TypeScript and Python, the platform performs the handshakes, so their packages do not count them.
 #[test]
 fn counters_have_the_same_names() {
     const RUST: &str = r"(?m)^    (\w+)(?: by operation)?,$";

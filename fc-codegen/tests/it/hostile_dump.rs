@@ -1,4 +1,4 @@
-//! Dumps with program text in them. No text of a dump may become code, in any language.
+//! Dumps that contain program text. No text of a dump may become code in any language.
 
 use crate::good_spec;
 use fc_codegen::emit::generate;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// A word that no spec has. Outside comments and literals it is code.
 const MARK: &str = "PWNED";
 
-/// Texts that end a literal or a comment of some language and go on as code.
+/// Texts that end a literal or a comment of some language and continue as code.
 const PAYLOADS: &[&str] = &[
     "PWNED();",
     "x: i32 = PWNED(); y",
@@ -44,7 +44,7 @@ const PAYLOADS: &[&str] = &[
     "\0PWNED()",
 ];
 
-/// Every text of a value, by its place.
+/// Collects every text of a value with its path.
 fn texts(value: &Value, at: &str, out: &mut Vec<(String, String)>) {
     match value {
         Value::String(text) => out.push((at.to_owned(), text.clone())),
@@ -63,13 +63,13 @@ fn texts(value: &Value, at: &str, out: &mut Vec<(String, String)>) {
     }
 }
 
-/// How a language writes what is not code.
+/// The syntax of comments and literals in a language.
 struct Lexis {
     line_comment: &'static str,
     has_block_comments: bool,
     nests_comments: bool,
     quotes: &'static [&'static str],
-    /// What begins code inside a text, and the quotes in which it does.
+    /// The start of code inside a literal, and the quotes that allow it.
     interpolation: Option<(&'static str, &'static [&'static str])>,
 }
 
@@ -107,7 +107,7 @@ fn lexis(extension: &str) -> Option<Lexis> {
     })
 }
 
-/// The code of a file: all but its comments and literals. Code inside a literal stays.
+/// Returns the code of a file without comments and literals. Code inside a literal stays.
 fn code(text: &str, lexis: &Lexis) -> String {
     let mut code = String::new();
     let mut rest = text;
@@ -152,7 +152,7 @@ fn code(text: &str, lexis: &Lexis) -> String {
                 if here.starts_with('\\') && !is_raw {
                     to += 1;
                 } else if quote.len() == 1 && *quote != "`" && here.starts_with(['\n', '\r']) {
-                    // An open literal: all that follows is code.
+                    // An open literal: the rest is code.
                     break;
                 } else if let Some((mark, quotes)) = lexis.interpolation
                     && quotes.contains(quote)
@@ -172,7 +172,7 @@ fn code(text: &str, lexis: &Lexis) -> String {
     code
 }
 
-/// Words of Rust code, without comments and literals.
+/// Returns `true` if Rust code contains the mark outside comments and literals.
 fn has_mark(tokens: TokenStream) -> bool {
     tokens.into_iter().any(|tree| match tree {
         TokenTree::Group(group) => has_mark(group.stream()),
@@ -181,7 +181,8 @@ fn has_mark(tokens: TokenStream) -> bool {
     })
 }
 
-/// Program text in the samples of doc comments, which rustdoc compiles: in fences, or indented by four spaces.
+/// Returns `true` if a sample in a doc comment contains the mark. rustdoc compiles samples in fences and samples that
+/// are indented by four spaces.
 fn is_sampled(text: &str) -> bool {
     let docs = text.lines().filter_map(|line| {
         let line = line.trim_start();
@@ -202,7 +203,7 @@ fn is_sampled(text: &str) -> bool {
     false
 }
 
-/// Why a file has a text of the spec as code.
+/// Returns the reason why a file contains a text of the spec as code.
 fn fault(path: &str, text: &str) -> Option<String> {
     let extension = path.rsplit_once('.').map(|(_, extension)| extension);
     if extension == Some("rs") {
@@ -224,8 +225,8 @@ fn fault(path: &str, text: &str) -> Option<String> {
     Some(format!("it has the text as code behind {line:?}"))
 }
 
-/// One of so many mutations is tried; `FC_EVERY=1` tries them all. `FC_DUMPS` is a folder for the dumps that are not refused
-/// and change a file.
+/// The test tries one of this many mutations. `FC_EVERY=1` tries all. `FC_DUMPS` names a folder for dumps that are
+/// accepted and change a file.
 const EVERY: usize = 97;
 
 #[test]

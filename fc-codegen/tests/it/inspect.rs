@@ -1,4 +1,4 @@
-//! What `fcproto inspect` tells of the small good spec.
+//! The output of `fcproto inspect` for the small good spec.
 
 mod refused;
 
@@ -14,7 +14,7 @@ use fc_spec::syntax::read_dir;
 use serde_json::json;
 use std::path::Path;
 
-/// path, type, whether optional, how it travels, example.
+/// Path, type, optional or not, form on the wire, example.
 type Row<'a> = (&'a str, &'a str, bool, &'a str, &'a str);
 
 const RESPONSE: &[Row<'static>] = &[
@@ -72,14 +72,14 @@ fn a_dump_lists_everything_in_a_body() {
     assert_eq!(variants.as_deref(), Some("[\"pair\",\"single\"]"));
 }
 
-/// In one line and in an order that does not depend on how they are written.
+/// Joins the words in sorted order, so that their order in the source does not matter.
 fn sorted(words: &str) -> String {
     let mut words: Vec<_> = words.split_whitespace().collect();
     words.sort_unstable();
     words.join(" ")
 }
 
-/// The keys that the documentation of the format promises, wherever they stand.
+/// The dump has the keys that the documentation of the format promises.
 #[test]
 fn a_dump_has_its_documented_keys() {
     let dump = inspect::value(&good_spec::model());
@@ -225,7 +225,7 @@ fn a_dump_is_json() {
     assert!(text.ends_with("}\n"));
 }
 
-/// The model of a project of this repository.
+/// Returns the model of a project in this repository.
 fn model_in(project: &str) -> Model {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("..")
@@ -235,7 +235,7 @@ fn model_in(project: &str) -> Model {
     load(&sources, &mut faults).model().expect("a sound spec")
 }
 
-/// Byte for byte, for protocols with other headers, names and orders of bytes.
+/// The dump and the spec generate the same bytes, also for protocols with other headers, names and byte orders.
 #[test]
 fn dump_and_spec_generate_the_same() {
     for model in [
@@ -291,8 +291,8 @@ fn the_yaml_is_that_of_the_json() {
     assert_eq!(yaml, inspect::value(&model));
 }
 
-/// Dumps are kept, as what a protocol was. This one was made when the format began, and is never made again: what is
-/// added to the format must do without it here.
+/// Users keep dumps of old protocols. This one is from the start of the current format and must not be regenerated.
+/// Additions to the format must be optional.
 #[test]
 fn a_kept_dump_of_this_format_is_read() {
     let kept = include_str!("../dumps/3.json");
@@ -301,7 +301,7 @@ fn a_kept_dump_of_this_format_is_read() {
     assert!(Dump::read(&inspect::json(&model)).is_ok());
 }
 
-/// For whom a thing is, as the documentation of the format says it; and what one audience has of it all.
+/// The dump has the audiences of each item as documented, and a dump for one audience has its part only.
 #[test]
 fn dump_has_the_audiences() {
     let model = good_spec::model();

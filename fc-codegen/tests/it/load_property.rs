@@ -1,5 +1,5 @@
-//! Whatever stands in the files: faults or a model, never both, never neither, and never a panic; and a model
-//! that passed every check can be emitted.
+//! Any file content gives either errors or a model. It never gives both or neither, and it never panics. A model that
+//! passes every check can be emitted.
 
 use crate::good_spec;
 use fc_codegen::emit;
@@ -11,22 +11,22 @@ use fc_spec::model::Lang;
 use fc_spec::source::Sources;
 use proptest::prelude::*;
 
-/// One change to a text.
+/// A change of a text.
 #[derive(Clone, Debug)]
 enum Edit {
-    /// Takes out a line.
+    /// Deletes a line.
     Drop(usize),
-    /// Writes a line a second time.
+    /// Repeats a line.
     Repeat(usize),
     /// Swaps two lines.
     Swap(usize, usize),
-    /// Replaces a word by another of the text, or by one that is odd.
+    /// Replaces a word by another word of the text, or by an odd one.
     Word(usize, usize),
     /// Indents a line.
     Indent(usize),
 }
 
-/// Words that are odd in most places.
+/// Words that are wrong in most places.
 const ODD: &[&str] = &[
     "null",
     "{}",
@@ -130,7 +130,7 @@ proptest! {
             let file = sources.get(fault.primary.span.file).expect("a known file");
             prop_assert!(file.text.get(fault.primary.span.start..fault.primary.span.end).is_some());
         }
-        // Rendering walks every label and fix.
+        // Rendering visits every label and fix.
         let _ = render(&faults, &sources, Format::Json, Lang::En);
         if let Some(model) = model {
             let _ = inspect::json(&model);

@@ -1,7 +1,7 @@
-//! Names of a spec that a language cannot have: the fixtures of `names/`, each laid over the small good spec.
+//! Names of a spec that a language does not allow. Each fixture of `names/` is added to the small good spec.
 //!
-//! A fixture says in comments at its top what must be found in which of all languages, and nothing else:
-//! `# expect: FC0209 at 6:3 in Kotlin`.
+//! Comments at the top of a fixture list all expected findings with their languages: `# expect: FC0209 at 6:3 in
+//! Kotlin`.
 
 use crate::good_spec;
 use fc_codegen::package::items::clashes;
@@ -14,7 +14,7 @@ use fc_spec::source::Sources;
 use std::fs;
 use std::path::Path;
 
-/// What is found in a spec of these files, in the words of the fixtures.
+/// Returns the findings for these files, in the format of the fixtures.
 fn found(files: &[(String, String)], shown: &str) -> Vec<String> {
     let sources = Sources::from_texts(files.iter().map(|(path, text)| (path, text)));
     let mut faults = Faults::new();
@@ -37,14 +37,14 @@ fn found(files: &[(String, String)], shown: &str) -> Vec<String> {
     clashes.iter().map(say).collect()
 }
 
-/// The good spec with one more file of commands.
+/// Returns the good spec with another file of commands.
 fn with(text: &str) -> Vec<(String, String)> {
     let good = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
     let more = ("spec/commands/bad.yaml".to_owned(), text.to_owned());
     good.into_iter().chain([more]).collect()
 }
 
-/// The languages in which a name of `protocol.yaml` cannot be.
+/// Returns the languages that refuse a name of `protocol.yaml`.
 fn languages(files: &[(String, String)]) -> Vec<String> {
     let found = found(files, "spec/protocol.yaml");
     let language = |it: String| it.split(" in ").nth(1).map(str::to_owned);
@@ -92,7 +92,7 @@ fn similar_envelope_keys_clash_in_some_languages() {
     assert_eq!(languages(&files), ["TypeScript", "Kotlin", "Java"]);
 }
 
-/// Where a language can have a name only in another spelling, it has that.
+/// A language that allows a name only in another spelling uses that spelling.
 #[test]
 fn reserved_words_are_escaped() {
     for (language, role, name, spelling) in [
@@ -131,7 +131,7 @@ fn reserved_words_are_escaped() {
     }
 }
 
-/// A type that the ids of an entity would have is another's name only where they have one.
+/// The ID type of an entity clashes with another name only in packages that have ID types.
 #[test]
 fn the_type_of_ids_is_a_name_like_any_other() {
     let text = "\

@@ -1,4 +1,4 @@
-//! The writer against a real folder: each case is a folder before, artifacts, and the folder after.
+//! The writer in a real folder. Each case has the folder before, the artifacts, and the folder after.
 
 use fc_codegen::output::{MANIFEST, OutputError, Plan, plan};
 use fc_codegen::product::{Artifact, Product};
@@ -9,19 +9,19 @@ use tempfile::TempDir;
 
 type Tree<'a> = &'a [(&'a str, &'a str)];
 
-/// `markdown a.md` owns, writes or finds a file, as the lists say.
+/// A case of the writer. `markdown a.md` is the path `a.md` of the product `markdown`.
 struct Case {
     name: &'static str,
-    /// Files on the disk.
+    /// Files on disk.
     before: Tree<'static>,
-    /// Owned paths, `product path`.
+    /// Owned paths, as `product path`.
     owned: &'static [&'static str],
-    /// Artifacts: `product path`, contents.
+    /// Artifacts: `product path`, and contents.
     artifacts: Tree<'static>,
     only: &'static [&'static str],
-    /// `+` created, `~` updated, `=` unchanged, `-` orphaned, `!` foreign; the manifest left out.
+    /// `+` created, `~` updated, `=` unchanged, `-` orphaned, `!` foreign. The list omits the manifest.
     plan: &'static [&'static str],
-    /// Files on the disk after writing; `None` if it is refused and nothing has changed.
+    /// Files on disk after writing; `None` if the writer refuses and changes nothing.
     after: Option<Tree<'static>>,
     /// Owned paths after writing.
     owned_after: &'static [&'static str],
@@ -354,7 +354,7 @@ fn manifest(owned: &[&str]) -> String {
     serde_json::json!({ "format": 1, "about": "", "products": products }).to_string()
 }
 
-/// Owned paths of the manifest on the disk, as `product path`.
+/// Returns the owned paths in the manifest on disk, as `product path`.
 fn owned(root: &Path) -> Vec<String> {
     let text = fs::read_to_string(root.join(MANIFEST)).unwrap();
     let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -372,7 +372,7 @@ fn owned(root: &Path) -> Vec<String> {
     owned
 }
 
-/// Every file below a folder.
+/// Returns every file below a folder.
 fn tree(root: &Path) -> BTreeMap<String, String> {
     fn walk(root: &Path, folder: &Path, out: &mut BTreeMap<String, String>) {
         let entries: Vec<_> = fs::read_dir(folder).unwrap().map(Result::unwrap).collect();

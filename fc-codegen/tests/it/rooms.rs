@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A crate, and its modules, lowest first. A module may use earlier ones.
+/// A crate and its modules, lowest first. A module may use earlier ones.
 struct Crate {
     name: &'static str,
     rooms: &'static [&'static str],
@@ -37,7 +37,7 @@ const CRATES: &[Crate] = &[
             "revision",
         ],
         upwards: &[
-            // An answer of the owner is written in the layout of the file.
+            // The answer of an owner is written in the format of the file.
             ("load", "format"),
         ],
     },
@@ -92,7 +92,7 @@ const CRATES: &[Crate] = &[
             "server",
         ],
         upwards: &[
-            // The trait of messages names their reader.
+            // The trait of messages names the JSON reader.
             ("message", "json"),
         ],
     },
@@ -232,7 +232,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Names of the modules of a crate that a source file uses, outside of comments and tests.
+/// Returns the modules of a crate that a source file uses, outside of comments and tests.
 fn used(text: &str) -> BTreeSet<&str> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines = code
@@ -247,7 +247,7 @@ fn used(text: &str) -> BTreeSet<&str> {
     .collect()
 }
 
-/// The uses of a later module in a crate.
+/// Returns the uses of later modules in a crate.
 fn upwards(of: &Crate) -> BTreeSet<(&'static str, &'static str)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
@@ -289,7 +289,7 @@ fn modules_use_only_earlier_ones() {
     }
 }
 
-/// Names in the sections of ARCHITECTURE about crates that are no file or folder of the crate.
+/// Names in the crate sections of ARCHITECTURE that are not files or folders of the crate.
 const NO_MODULES: [&str; 3] = ["async", "fc.yaml", "fcproto"];
 
 #[test]

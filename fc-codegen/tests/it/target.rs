@@ -1,4 +1,4 @@
-//! What `fc.yaml` may say, and what is made of it.
+//! The settings of `fc.yaml`, and the files that they generate.
 
 use crate::good_spec;
 use fc_codegen::emit::generate;
@@ -53,7 +53,7 @@ fn docs_are_made_in_the_languages_asked_for() {
     );
 }
 
-/// Comments link to the pages that have a language of the comments, and to none without docs.
+/// Comments link to the pages in their own languages. They have no links if the project has no pages.
 #[test]
 fn comments_name_the_docs_where_they_are() {
     let comments = |yaml: &str| {
@@ -83,8 +83,8 @@ fn comments_name_the_docs_where_they_are() {
     }
 }
 
-/// Those of each entity have a type of their own where it is asked for, and only there; pages that are made alone show
-/// the same code.
+/// Each entity has an ID type if the target requests it, and only then. Pages that are generated alone show the same
+/// code.
 #[test]
 fn ids_have_types_where_they_are_asked_for() {
     let all = |yaml: &str, only: &[&str]| {
@@ -192,7 +192,7 @@ fn invalid_settings_are_refused_by_name() {
     }
 }
 
-/// An editor shows the defaults of the grammar, and the generator has its own.
+/// An editor shows the defaults of the grammar. The generator must have the same ones.
 #[test]
 fn defaults_are_those_of_the_schema() {
     let schema: Value = serde_json::from_str(&project_schema()).expect("JSON");
@@ -226,7 +226,7 @@ fn only_names_targets() {
     );
 }
 
-/// Each target holds what its own audience has.
+/// A target contains the part of its audience.
 #[test]
 fn a_target_is_made_for_its_audience() {
     let yaml = "targets: { rust: { audience: product_app }, typescript: , mine: { plugin: x, out: a, audience: debugging_app } }";
@@ -251,7 +251,7 @@ fn a_target_is_made_for_its_audience() {
     assert_eq!(made.to_string(), message);
 }
 
-/// A page shows the packages that the project has, made this time or not, and no other.
+/// A page shows all packages of the project and no others, even if this run does not generate them.
 #[test]
 fn pages_show_the_languages_of_the_project() {
     let tabs = |yaml: &str, only: &[&str]| {

@@ -1,4 +1,5 @@
-//! A new constraint and a new section change few handwritten files. The patches of toys in `tests/touch` show which.
+//! A new constraint and a new section change few handwritten files. The patches in `tests/touch` add an example of
+//! each.
 
 use crate::docs_support::project;
 use std::collections::BTreeSet;
@@ -58,7 +59,7 @@ fn the_patches_fit() {
         let output = Command::new("git")
             .args(["apply", "--check", patch])
             .current_dir(&root)
-            // Outside of a repository, git takes paths relative to the current directory.
+            // Outside a repository, git takes paths relative to the current directory.
             .env("GIT_CEILING_DIRECTORIES", parent)
             .output()
             .expect("git");

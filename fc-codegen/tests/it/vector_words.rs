@@ -1,5 +1,5 @@
-//! No word that a decoder has to know is without a vector: the specs of the tests use each, and one of their vectors
-//! shows it. Without this, decoders could differ about a word while every test is green.
+//! Every word that a decoder must know has a vector: the specs of the tests use it, and one of their vectors shows it.
+//! Otherwise decoders could differ although every test passes.
 
 use crate::docs_support::{fixture, model, project};
 use fc_codegen::emit::vectors;
@@ -12,12 +12,12 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-/// A spec that no owner edits, with what its vectors say.
+/// A spec that no owner edits, and the content of its vectors.
 struct Shown {
     model: Model,
-    /// Cases of what is accepted: `quirk_note_null`.
+    /// Cases of accepted vectors, such as `quirk_note_null`.
     accepted: Vec<String>,
-    /// Error and case of what is refused: `bad_length`, `request_bad_length_note_long`.
+    /// Error and case of refused vectors, such as `bad_length` and `request_bad_length_note_long`.
     rejected: Vec<(String, String)>,
 }
 
@@ -52,7 +52,7 @@ fn shown() -> Vec<Shown> {
         .collect()
 }
 
-/// Every error that an operation declares is in its vectors, where responses can carry it.
+/// The vectors show every error that an operation declares, if responses can carry it.
 #[test]
 fn every_declared_error_is_shown() {
     let mut count = 0;
@@ -90,7 +90,7 @@ impl Shown {
         structs.flatten()
     }
 
-    /// Whether a body with this field is accepted in another form than the one that is sent.
+    /// Returns `true` if a vector shows that this field accepts another form than the one that is sent.
     fn shows_a_form_of(&self, field: &Field) -> bool {
         let mut quirks = self.accepted.iter();
         quirks.any(|case| {
@@ -98,7 +98,7 @@ impl Shown {
         })
     }
 
-    /// Whether a body is refused with this error because of this field.
+    /// Returns `true` if a body is refused with this error because of this field.
     fn refuses(&self, field: &Field, error: &str, form: &str) -> bool {
         let end = format!("{}{form}", field.wire);
         let mut rejected = self.rejected.iter();
@@ -111,7 +111,7 @@ fn each_error_of_a_frame_or_a_body_has_a_vector() {
     let text = fs::read_to_string(project().join("conformance/errors.json")).expect("the errors");
     let errors: Value = serde_json::from_str(&text).expect("JSON");
     let errors = errors["errors"].as_array().expect("a list");
-    // What a runtime limits by itself is in no spec.
+    // A spec does not define the limits that a runtime sets itself.
     let of_the_wire = errors
         .iter()
         .filter(|it| it["where"] != "call" && it["own_limit"] != true);
@@ -135,7 +135,7 @@ fn each_quirk_of_a_field_has_a_vector() {
     }
 }
 
-/// A body with the value in its type's own form is refused.
+/// A body with the value in the plain form of its type is refused.
 #[test]
 fn each_wire_form_has_a_vector() {
     let shown = shown();
@@ -153,7 +153,7 @@ fn each_wire_form_has_a_vector() {
     }
 }
 
-/// A new constraint names the case of a value that breaks it after its key.
+/// After the name of the field, a case names the value that breaks the constraint. New constraints use their own name.
 #[test]
 fn each_constraint_has_a_vector() {
     let forms = BTreeMap::from([
@@ -185,7 +185,8 @@ fn each_constraint_has_a_vector() {
     assert_eq!(seen, all.keys().cloned().collect());
 }
 
-/// A body whose field contradicts its condition is accepted, in either way, whether the condition is negated or not.
+/// A body whose field contradicts its condition is accepted. Vectors show a missing and an unexpected field, for both
+/// kinds of conditions.
 #[test]
 fn each_condition_has_a_vector() {
     let mut seen = BTreeSet::new();
@@ -208,7 +209,7 @@ fn each_condition_has_a_vector() {
     assert_eq!(Vec::from_iter(seen), all.concat());
 }
 
-/// What a role or a quirk does to a frame, the frames of these specs show.
+/// Frames of these specs show the effect of each role and quirk.
 #[test]
 fn each_role_and_quirk_of_a_header_is_in_a_spec() {
     let shown = shown();

@@ -1,4 +1,4 @@
-//! Versions of packages.
+//! The versions of packages.
 
 use crate::good_spec;
 use fc_codegen::inspect::fingerprint;
@@ -29,7 +29,7 @@ fn version_has_the_form_of_its_ecosystem() {
     }
 }
 
-/// The model of the good spec after a change of its texts.
+/// Returns the model of the good spec after a change of its files.
 fn model(change: impl Fn(String) -> String) -> Model {
     let files =
         good_spec::FILES.map(|path| (format!("spec/{path}"), change(good_spec::file(path))));

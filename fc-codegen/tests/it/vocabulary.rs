@@ -1,4 +1,4 @@
-//! A word of a closed set is written in `fc-spec/src/vocabulary`; everything else asks it.
+//! Each word of a closed set is written in `fc-spec/src/vocabulary` only. All other code uses its constants.
 
 use fc_spec::model::{
     AnswerKind, BodyState, ByteOrder, DigestAlgorithm, Direction, Effect, EncodingRole,
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Where words are looked for.
+/// The directories to search.
 const SOURCES: [&str; 7] = [
     "fc-cli/src",
     "fc-codegen/src",
@@ -20,10 +20,10 @@ const SOURCES: [&str; 7] = [
     "fc-spec/src",
 ];
 
-/// The one folder for them.
+/// The only folder for these words.
 const HOME: &str = "fc-spec/src/vocabulary";
 
-/// Words that mean something else as well, and what.
+/// Words with another meaning, and that meaning.
 const ALSO: [(&str, &str); 29] = [
     (
         "code",
@@ -74,7 +74,7 @@ const ALSO: [(&str, &str); 29] = [
     ),
 ];
 
-/// The widths of integers are also those of header fields, which are no closed set: `bytes(16)`.
+/// Header fields use the widths of integers too, and are not a closed set: `bytes(16)`.
 const WIDTHS: [&str; 4] = ["u8", "u16", "u32", "u64"];
 
 fn words() -> Vec<&'static str> {
@@ -123,7 +123,7 @@ fn root() -> &'static Path {
         .expect("the root")
 }
 
-/// Literals of a source, those of its comments and tests left out, each with its file.
+/// Collects the literals of a source outside of comments and tests, each with its file.
 fn literals(found: &mut BTreeMap<String, Vec<String>>, path: &Path) {
     if path.is_dir() {
         for entry in fs::read_dir(path).unwrap() {
@@ -143,7 +143,7 @@ fn literals(found: &mut BTreeMap<String, Vec<String>>, path: &Path) {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     for line in code.lines() {
         let line = line.split("//").next().unwrap_or_default();
-        // Every second part is inside quotes; escaped ones are in no word.
+        // Every second part is inside quotes. No word contains an escaped quote.
         for literal in line.split('"').skip(1).step_by(2) {
             found
                 .entry(literal.to_owned())
@@ -168,7 +168,7 @@ fn no_word_is_spelled_twice_outside_its_set() {
             wrong.push(format!("`{word}`: {}", places.join(", ")));
         }
     }
-    // What is an exception no longer goes.
+    // An exception that is no longer needed must go.
     for (word, _) in ALSO {
         if !words.contains(&word) || found.get(word).map_or(0, Vec::len) < 2 {
             wrong.push(format!("`{word}` is no exception any more"));

@@ -1,9 +1,9 @@
-//! What the wire is like stands in `spec/` alone: no hand-written source holds a code, port, host, head, result code
-//! or key of this project's spec. The facts are taken from the model; what is meant to stand in a source all the same
-//! is in `wire_facts/exceptions.yaml`. Comments and tests are not looked at.
+//! Only `spec/` defines the wire format. No handwritten source contains a code, port, host, head, result code or key of
+//! this project's spec. The test takes these facts from the model and does not read comments and tests.
+//! `wire_facts/exceptions.yaml` lists the allowed exceptions.
 //!
-//! Only distinctive facts are searched for, so that whatever the spec gains, no word or number of another meaning is
-//! taken for it: numbers that are not round, codes as the spec writes them, keys in camel case.
+//! The test searches for distinctive facts only: numbers that are not round, codes as the spec writes them, and keys in
+//! camel case. Additions to the spec therefore do not clash with words and numbers of another meaning.
 
 use camino::Utf8Path;
 use fc_spec::diagnostic::Faults;
@@ -18,7 +18,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-/// Where sources written by hand lie: a file or a directory with all below it, and the endings that count.
+/// Handwritten sources: a file or a whole directory, and the endings that count.
 const SOURCES: [(&str, &[&str]); 27] = [
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "j2"]),
@@ -52,9 +52,9 @@ const SOURCES: [(&str, &[&str]); 27] = [
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Exceptions {
-    /// A number or word of one file.
+    /// Numbers and words that have another meaning in one file.
     means_something_else: Vec<Exception>,
-    /// Files whose words are those of another format.
+    /// Files that use the words of another format.
     other_formats: Vec<OtherFormat>,
 }
 
@@ -76,20 +76,20 @@ struct OtherFormat {
 /// The first bytes of frames.
 struct Head {
     shown: String,
-    /// The first byte in hex and in decimal: a line without either needs no closer look.
+    /// The first byte in hex and in decimal. A line without either needs no closer check.
     first: [String; 2],
     pattern: Regex,
 }
 
-/// What a source must not hold.
+/// The facts that a source must not contain.
 struct Facts {
-    /// Four hex digits, as the spec writes codes.
+    /// Codes as the spec writes them, with four hex digits.
     codes: BTreeSet<u64>,
-    /// Codes, ports and result codes, where they are written in decimal.
+    /// Codes, ports and result codes in decimal.
     numbers: BTreeSet<u64>,
     keys: BTreeSet<String>,
     heads: Vec<Head>,
-    /// Unless any program may name it.
+    /// `None` if the host is a name that any program may use, such as `localhost`.
     host: Option<String>,
 }
 
@@ -108,7 +108,7 @@ fn model() -> Model {
         .expect("the spec has no faults")
 }
 
-/// Sizes, percentages and times are round; so a round number says nothing of the spec.
+/// Returns `true` for numbers that are often sizes, percentages or times. They identify no fact of the spec.
 fn is_round(number: u64) -> bool {
     number < 0x100
         || number.is_multiple_of(50)
@@ -116,7 +116,7 @@ fn is_round(number: u64) -> bool {
         || (number + 1).is_power_of_two()
 }
 
-/// Whether a word is a key of messages rather than a word of a language.
+/// Returns `true` if a word looks like a key of a message and not like a word of a language.
 fn is_camel(word: &str) -> bool {
     let mut letters = word.chars().zip(word.chars().skip(1));
     word.len() > 6
@@ -154,7 +154,7 @@ impl Facts {
             .map(|field| &field.wire)
             .chain(envelope.map(|field| &field.wire))
             .chain(model.frame.header.iter().map(|field| &field.wire))
-            // What is no single word of ASCII is not searched for.
+            // The search supports only keys that are a single ASCII word.
             .filter(|key| is_camel(key) && pieces(key).map(|(_, piece)| piece).eq([key.as_str()]))
             .cloned()
             .collect();
@@ -169,7 +169,7 @@ impl Facts {
                 write!(decimal, "{between}{byte}").unwrap();
                 write!(shown, "{byte:02X}").unwrap();
             }
-            // One byte alone is nothing to go by.
+            // A single byte is too common to search for.
             if head.len() > 1 {
                 let pattern =
                     format!(r"(?i)(?:^|[^0-9A-Za-z])(?:{hex}|{decimal})(?:[^0-9A-Za-z]|$)");
@@ -192,7 +192,7 @@ impl Facts {
         }
     }
 
-    /// The facts that a line holds, as they are written there.
+    /// Returns the facts in a line, as the line writes them.
     fn in_line(&self, ending: &str, line: &str) -> Vec<String> {
         let mut found: Vec<String> = numbers(line)
             .filter(|(token, number)| {
@@ -215,7 +215,8 @@ impl Facts {
     }
 }
 
-/// The numbers in a line, as written and in value. No number of a standard, a date or a character.
+/// Returns the numbers in a line, as written and as values. It skips parts of dates, fractions, standards and character
+/// escapes.
 fn numbers(line: &str) -> impl Iterator<Item = (&str, u64)> {
     pieces(line).filter_map(|(at, piece)| {
         let (before, after) = (&line[..at], &line[at + piece.len()..]);
@@ -231,7 +232,7 @@ fn numbers(line: &str) -> impl Iterator<Item = (&str, u64)> {
             .find(|c: char| c != '_' && !c.is_digit(radix))
             .unwrap_or(digits.len());
         let (digits, suffix) = digits.split_at(end);
-        // `5656u16` is a number; `5656th` is none.
+        // `5656u16` is a number, `5656th` is not.
         if !matches!(
             suffix,
             "" | "u16" | "u32" | "u64" | "i32" | "i64" | "usize" | "n"
@@ -244,7 +245,7 @@ fn numbers(line: &str) -> impl Iterator<Item = (&str, u64)> {
     })
 }
 
-/// Runs of letters, digits and underscores, and where they begin.
+/// Returns runs of letters, digits and underscores with their offsets.
 fn pieces(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let inside = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.split(move |c: char| !inside(c))
@@ -252,7 +253,7 @@ fn pieces(text: &str) -> impl Iterator<Item = (usize, &str)> {
         .map(|piece| (piece.as_ptr() as usize - text.as_ptr() as usize, piece))
 }
 
-/// What finds the strings of a line.
+/// Returns the pattern for the strings of a line.
 fn strings(ending: &str) -> &'static Regex {
     static DOUBLE: LazyLock<Regex> = LazyLock::new(|| Regex::new(r#""(?:[^"\\]|\\.)*""#).unwrap());
     static SCRIPT: LazyLock<Regex> =
@@ -268,7 +269,7 @@ fn strings(ending: &str) -> &'static Regex {
     }
 }
 
-/// The words in camel case that a line has in its strings: in code they are names of the program's own.
+/// Returns the camel case words in the strings of a line. Outside strings, such words are names of the program.
 fn words(ending: &str, line: &str) -> Vec<String> {
     static INSERTED: LazyLock<Regex> =
         LazyLock::new(|| Regex::new(r"\$(?:\{[^}]*\}|[a-z]\w*)").unwrap());
@@ -284,7 +285,7 @@ fn words(ending: &str, line: &str) -> Vec<String> {
     found
 }
 
-/// The lines of a source that are neither comments nor tests, with their numbers.
+/// Returns the lines of a source that are neither comments nor tests, with their numbers.
 fn code<'t>(ending: &str, text: &'t str) -> Vec<(usize, &'t str)> {
     let own = |line: &&str| ending != "rs" || !line.starts_with("#[cfg(test)]");
     let (comment, behind): (&[&str], &str) = match ending {
@@ -307,7 +308,7 @@ fn code<'t>(ending: &str, text: &'t str) -> Vec<(usize, &'t str)> {
 fn files(path: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
     let name = path.file_name().unwrap_or_default();
     if path.is_dir() {
-        // What the site is built into repeats the spec.
+        // The output of the site repeats the spec.
         if ["tests", "dist", "cache"]
             .iter()
             .any(|other| name == *other)
@@ -331,7 +332,7 @@ fn is_ending(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|own| own == ending)
 }
 
-/// Every source by its name in the project, with its ending.
+/// Returns every source by its path in the project, with its ending.
 fn sources() -> BTreeMap<String, (String, String)> {
     let mut sources = BTreeMap::new();
     for (place, endings) in SOURCES {
@@ -428,7 +429,7 @@ fn each_fact_would_be_seen() {
             assert_eq!(seen("rs", &text), 1, "{text}");
         }
     }
-    // More than once where a frame head is the same number.
+    // A code counts more than once if a frame head is the same number.
     for code in &facts.codes {
         let text = format!("if (code === 0x{code:04X}) {{");
         assert!(seen("ts", &text) >= 1, "{text}");

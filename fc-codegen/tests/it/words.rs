@@ -1,13 +1,13 @@
-//! No text of the project uses a word of `words/forbidden.yaml`: not the guides, the templates, the
-//! explanations and messages of errors, the help of the commands, the site's own labels, nor the documentation of
-//! what users call. What only a reader of the source sees is not looked at.
+//! No text of the project uses a word of `words/forbidden.yaml`. The test reads guides, templates, explanations and
+//! messages of errors, help of the commands, labels of the site and documentation for users. It skips comments that
+//! only readers of the source see.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What is read: a file or a directory with all below it, and the endings that count.
+/// The texts to read: a file or a whole directory, and the endings that count.
 const TEXTS: [(&str, &[&str]); 62] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
@@ -95,8 +95,8 @@ fn forbidden() -> Vec<Forbidden> {
     by_language.into_values().flatten().collect()
 }
 
-/// Whether only a reader of the source sees a line. The two halves of the generator document their items for their
-/// own people.
+/// Returns `true` if only readers of the source see a line. The doc comments of `fc-codegen` and `fc-spec` are for
+/// their developers.
 fn is_internal(file: &str, line: &str) -> bool {
     let line = line.trim_start();
     let internal = file.starts_with("fc-codegen") || file.starts_with("fc-spec");
@@ -108,7 +108,7 @@ fn is_internal(file: &str, line: &str) -> bool {
         Some("rs") => line.starts_with("//") && (!is_doc || internal),
         Some("py") => line.starts_with('#'),
         Some("cpp" | "hpp") => line.starts_with("//") && !is_doc,
-        // Of the package, users read the documentation of items.
+        // Users read the documentation of items in a package.
         Some("ts" | "kt" | "java") if file.starts_with("stubs") => line.starts_with("//"),
         Some("ts" | "vue") => ["//", "/*", "*"]
             .iter()
@@ -118,7 +118,7 @@ fn is_internal(file: &str, line: &str) -> bool {
 }
 
 impl Forbidden {
-    /// The first forbidden word in a line.
+    /// Returns the first forbidden word in a line.
     fn find(&self, line: &str, lower: &str) -> Option<&str> {
         let never = self.never.iter().find(|word| {
             let cased = word.chars().any(|c| c.is_ascii_uppercase());
@@ -136,7 +136,7 @@ impl Forbidden {
     }
 }
 
-/// Whether no ASCII word goes on beyond either end of a place.
+/// Returns `true` if neither end of the range is inside an ASCII word.
 fn is_whole(line: &str, start: usize, end: usize) -> bool {
     let bytes = line.as_bytes();
     let word = |at: Option<usize>| {
@@ -147,7 +147,7 @@ fn is_whole(line: &str, start: usize, end: usize) -> bool {
     !goes_on(start) && !goes_on(end)
 }
 
-/// Where a text breaks the list, and what to say there.
+/// Returns the forbidden words of a text, with their lines and replacements.
 fn found(list: &[Forbidden], file: &str, text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let lines = text.lines().enumerate();
@@ -181,7 +181,7 @@ fn files(path: &Path, endings: &[&str], out: &mut Vec<PathBuf>) {
     }
 }
 
-/// What breaks the list below some places.
+/// Returns the forbidden words in all texts of these places.
 fn all_found(places: &[(&str, &[&str])]) -> String {
     let (root, list) = (root(), forbidden());
     let mut all = Vec::new();

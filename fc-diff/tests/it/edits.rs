@@ -1,4 +1,5 @@
-//! Every change of `edits.txt` is judged as it says there, both ways, and each rule has its mirror.
+//! Applies every change of `edits.txt` in both directions and compares the findings with those that the file lists. It
+//! also checks that each rule has a mirror.
 
 use crate::support::{base, edits, edits_path, model};
 use fc_diff::{Deployment, Finding, Rule, diff};
@@ -94,7 +95,7 @@ fn each_finding_has_a_mirror() {
     assert_eq!(names, UNSHOWN.map(|(name, _)| name), "rules without a pair");
 }
 
-/// Rules that no pair shows, and why.
+/// Rules that no change of `edits.txt` shows, each with the reason.
 const UNSHOWN: [(&str, &str); 5] = [
     (
         "operation-port-changed",

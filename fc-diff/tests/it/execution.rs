@@ -1,8 +1,8 @@
-//! Frames that one version makes are read by the other, and what comes of that agrees with the rules.
+//! Sends the frames of one version to the other and checks that the outcome agrees with the rules.
 //!
-//! Each message is sent as its example and with every value in it changed in many ways, as far as the sender's own version
-//! allows that. A deployment is broken if a message is refused, is taken for another, or if a value gets lost or another
-//! name on the way.
+//! Each message is sent as its example, and again with every value changed in many ways that the sender's version
+//! allows. A deployment is broken if the receiver refuses a message, takes it for another one, loses a value or gives
+//! it another name.
 
 use crate::support::{base, edits, model};
 use fc_diff::{Deployment, diff};
@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-/// Rules whose breaks no frame shows, and why.
+/// Rules whose breaks no frame shows, each with the reason.
 const UNSEEN: [(&str, &str); 14] = [
     (
         "kind-or-direction-changed",
@@ -60,7 +60,7 @@ struct Sent {
     bytes: Vec<u8>,
 }
 
-/// What may stand in place of a value.
+/// Returns values to put in place of a value.
 fn others(value: &Json) -> Vec<Json> {
     match value {
         Json::Bool(_) => vec![json!(true), json!(false)],
@@ -108,7 +108,7 @@ fn others(value: &Json) -> Vec<Json> {
                 .chain([json!([])])
                 .collect()
         }
-        // Those of the choices of that spec among them.
+        // Includes values for the choices of this spec.
         Json::Object(_) | Json::Null => vec![
             json!("a"),
             json!(1),
@@ -120,7 +120,7 @@ fn others(value: &Json) -> Vec<Json> {
     }
 }
 
-/// A message with one value changed or left out, each once.
+/// Returns copies of a message, each with one value changed or left out.
 fn changed(whole: &Json) -> Vec<Json> {
     fn places(value: &Json, path: &str, found: &mut Vec<String>) {
         match value {
@@ -161,7 +161,7 @@ fn changed(whole: &Json) -> Vec<Json> {
     all
 }
 
-/// Everything that a version sends.
+/// Returns every message that a version sends.
 fn sent(model: &Model) -> Vec<Sent> {
     let reflector = Reflector::new(model);
     let mut all = Vec::new();
@@ -195,7 +195,7 @@ fn sent(model: &Model) -> Vec<Sent> {
     all
 }
 
-/// What a value is called, where its type gives it a name.
+/// Returns the name of a value if its type names its values.
 fn named(node: &Node<'_>) -> Option<String> {
     match &node.value {
         Value::Enum { named, .. } => named.map(|value| value.name.clone()),
@@ -204,7 +204,7 @@ fn named(node: &Node<'_>) -> Option<String> {
     }
 }
 
-/// The known values of a message by path: the field's name, and the value's if it has one.
+/// Returns the known values of a message by their path: the name of the field, and the name of the value if it has one.
 fn known(
     reflector: &Reflector<'_>,
     bytes: &[u8],
@@ -225,7 +225,7 @@ fn known(
     Some(found)
 }
 
-/// Whether a version has a field, or an enum or choice something, of this name.
+/// The names that a version has for fields, for values of enums and choices, and for operations.
 struct Names {
     fields: BTreeSet<String>,
     values: BTreeSet<String>,
@@ -256,7 +256,7 @@ impl Names {
     }
 }
 
-/// Whether a receiver makes something else of a message than its sender means; what.
+/// Describes how a receiver misunderstands a message; `None` if it understands what the sender means.
 fn broken(from: &Reflector<'_>, to: &Reflector<'_>, names: &Names, bytes: &[u8]) -> Option<String> {
     let meant = from.frame(bytes).expect("its own frame");
     let operation = meant.operation.expect("its own operation");
@@ -265,12 +265,12 @@ fn broken(from: &Reflector<'_>, to: &Reflector<'_>, names: &Names, bytes: &[u8])
         Err(error) => return Some(format!("{}: {}", operation.name, error.name())),
     };
     match decoded.frame.operation {
-        // Nobody answers what he does not know.
+        // A response that the receiver does not know gets no reply.
         None if meant.id.direction == Direction::Response => return None,
         None if names.operations.contains(&operation.name) => {
             return Some(format!("{}: not known by this code", operation.name));
         }
-        // A report that an app does not know is passed over.
+        // Receivers skip reports and streams that they do not know.
         None if operation.kind() != Kind::Command => return None,
         None => return Some(format!("{}: unknown", operation.name)),
         Some(other)
@@ -366,7 +366,7 @@ fn the_rules_agree_with_what_becomes_of_frames() {
             let (said, hidden) = (all(shown), all(hidden));
             let seen_ones: BTreeSet<Deployment> = seen.keys().copied().collect();
             pairs += 1;
-            // What no frame shows may be seen, but need not be.
+            // Frames may show a break of an `UNSEEN` rule, but need not.
             let holds = said.is_subset(&seen_ones)
                 && seen_ones
                     .iter()

@@ -4,7 +4,7 @@ use crate::support::{base, model, with};
 use fc_diff::{Deployment, Finding, Packages, diff, diff_since};
 use fc_spec::model::Model;
 
-/// Texts that the first and the last version have behind a line of a file.
+/// Additions that the first and the last version have after a line of a file.
 struct Case {
     file: &'static str,
     behind: &'static str,
@@ -12,7 +12,7 @@ struct Case {
     last: &'static str,
 }
 
-/// Returns the first version, one without the texts, and the last version.
+/// Returns the first version, a version without the additions, and the last version.
 fn versions(case: &Case) -> [Model; 3] {
     let base = base();
     let of = |more: &str| {

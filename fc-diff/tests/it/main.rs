@@ -1,4 +1,4 @@
-//! The integration tests, as one program: a program per file would link the crate each time.
+//! All integration tests in one program. One program per file would link the crate each time.
 
 #![allow(
     clippy::expect_used,

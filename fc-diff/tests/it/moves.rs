@@ -1,4 +1,4 @@
-//! What stands elsewhere in the files, and says the same.
+//! Moves operations and types within the files without changing their meaning.
 
 use crate::support::{base, model};
 use fc_diff::diff;
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 const GROUP: &str = "spec/commands/lamp.yaml";
 const TYPES: &str = "spec/types.yaml";
 
-/// The files, with another text in that of the group.
+/// Returns the sources with a change in the file of the group.
 fn with(sources: &Sources, change: impl Fn(&str) -> String) -> Sources {
     Sources::from_texts(sources.iter().map(|(_, file)| {
         let is_it = file.path == GROUP;

@@ -121,7 +121,7 @@ fn source_break_is_visible_in_a_package() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A name of each kind in each language. Without these, a parser that finds no names would pass.
+/// A name of each kind in each language. Without this list, a parser that finds no names would pass.
 const KNOWN: [(Language, &[&str]); 5] = [
     (
         Language::Rust,

@@ -1,17 +1,17 @@
-//! What a release has to be called, by what has changed.
+//! Tests which release numbers the changes since the last release allow.
 
 use crate::support::{base, edits, model};
 use fc_diff::release::{Number, Objection, goes_back, objections};
 use fc_diff::{About, Against, Finding, diff, waive};
 use fc_spec::model::{Location, Text, Waiver};
 
-/// What the first change of `edits.txt` with such findings comes to.
+/// Returns the findings of the first change of `edits.txt` that satisfies `is`.
 fn found(is: impl Fn(&[Finding]) -> bool) -> Vec<Finding> {
     let base = base();
     let old = model(&base).expect("the spec");
     let mut all = edits().1.into_iter().map(|edit| {
         let mut found = diff(&old, &model(&edit.apply(&base)).expect("a spec"));
-        // A version that is another is no change of its own, and one that is the same is what a release ends.
+        // The changes of `edits.txt` keep the version of the spec, which this rule would report for each break.
         found.retain(|it| it.rule.name != "change-not-announced");
         found
     });
@@ -26,7 +26,7 @@ fn breaks(found: &[Finding]) -> bool {
     found.iter().any(Finding::is_break) && !found.iter().any(|it| it.rule.is_error)
 }
 
-/// What is not about the number alone.
+/// Returns the kinds of the objections.
 fn names(objections: &[Objection]) -> Vec<&'static str> {
     let name = |it: &Objection| match it {
         Objection::NotLater { .. } => "not later",
@@ -100,7 +100,7 @@ fn waived_change_needs_the_step_of_an_addition() {
     waive(&mut found, &waivers, "2027-03-31", Against::Release);
     assert_eq!(objections(&last, &next, &found), []);
 
-    // A month later they hold no more.
+    // A month later the waivers have expired.
     for finding in &mut found {
         finding.waived = None;
     }
@@ -128,7 +128,7 @@ fn release_number_is_at_least_the_spec_version() {
         ("2026.12", "2026.09", false),
         ("1.0", "1", false),
         ("0.9", "1", true),
-        // What is no number says nothing.
+        // A version that is not a number sets no lower limit.
         ("0.9", "draft", false),
     ] {
         let objection = goes_back(&number(next), version);
@@ -152,7 +152,7 @@ fn unused_waiver_is_found_when_decidable() {
             line: 1,
         },
     };
-    // The second is of another check.
+    // The second waiver belongs to another check.
     let waivers = ["FC0717-000000000000", "FC0801-000000000000"].map(waiver);
     for (against, expected) in [
         (Against::Release, vec!["waiver-unused"]),

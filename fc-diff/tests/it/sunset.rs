@@ -1,4 +1,4 @@
-//! What goes before the day that was promised.
+//! Removes operations before and after their announced sunset.
 
 use crate::support::{base, model};
 use fc_diff::gone_early;

@@ -1,4 +1,4 @@
-//! The spec that the tests change, and the changes.
+//! The spec that the tests change, and the changes of `edits.txt`.
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
@@ -9,22 +9,22 @@ use std::path::{Path, PathBuf};
 
 /// A change of the spec.
 pub struct Edit {
-    /// What it is.
+    /// The title of the change.
     pub name: String,
-    /// The file, below the spec's directory.
+    /// The file, relative to the directory of the spec.
     pub file: String,
-    /// What stands there, and what is to stand there.
+    /// The lines to replace, and their replacement.
     pub texts: [String; 2],
-    /// What is found from the spec as it is to the changed one, and back.
+    /// The findings from the base spec to the changed one, and those of the way back.
     pub found: [Vec<String>; 2],
 }
 
-/// Where the changes are.
+/// Returns the path of the changes.
 pub fn edits_path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/edits.txt")
 }
 
-/// The changes, and the text above them.
+/// Returns the text above the changes, and the changes.
 pub fn edits() -> (String, Vec<Edit>) {
     let text = std::fs::read_to_string(edits_path()).expect("the changes");
     let (head, rest) = text.split_once("== ").expect("a first change");
@@ -44,8 +44,8 @@ pub fn edits() -> (String, Vec<Edit>) {
     (head.to_owned(), edits.collect())
 }
 
-/// Additions to that spec, each with the text before it. The changes need bytes, a time in a body and a spare enum value. They
-/// also need a closed enum, a second entity with numeric IDs and a second user of each coordinate system.
+/// Additions to that spec, each with the text before it. The changes need bytes, a time in a body, a spare enum value
+/// and a closed enum. They also need a second entity with numeric IDs and a second user of each coordinate system.
 const MORE: [[&str; 2]; 6] = [
     [
         "picture: { type: \"base64?\", length: [1, 8],",
@@ -90,7 +90,7 @@ const MORE: [[&str; 2]; 6] = [
     ],
 ];
 
-/// The files of the spec.
+/// Returns the files of the spec, with the additions.
 pub fn base() -> Sources {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-codegen/tests/docs");
     let mut faults = Faults::new();
@@ -105,7 +105,7 @@ pub fn base() -> Sources {
     }))
 }
 
-/// What a spec says.
+/// Builds the model of a spec. The error is the rendered list of diagnostics.
 pub fn model(sources: &Sources) -> Result<Model, String> {
     let mut faults = Faults::new();
     let loaded = load(sources, &mut faults);
@@ -114,7 +114,7 @@ pub fn model(sources: &Sources) -> Result<Model, String> {
         .ok_or_else(|| render(&faults, sources, Format::Text, Lang::En))
 }
 
-/// Replaces a text of one file, which has it once.
+/// Replaces a string that occurs once in a file.
 pub fn with(sources: &Sources, file: &str, from: &str, to: &str) -> Sources {
     let path = format!("spec/{file}");
     Sources::from_texts(sources.iter().map(|(_, file)| {
@@ -129,7 +129,7 @@ pub fn with(sources: &Sources, file: &str, from: &str, to: &str) -> Sources {
 }
 
 impl Edit {
-    /// The spec with the change.
+    /// Returns the spec with the change.
     pub fn apply(&self, sources: &Sources) -> Sources {
         let [from, to] = &self.texts;
         with(sources, &self.file, from, to)

@@ -1,7 +1,7 @@
-//! The generated package and the model at run time make the same of the same bytes.
+//! Decodes the same bytes with the generated package and with the model at run time. Both must agree.
 //!
-//! Frames are changed at random from the committed vectors. `FC_FRAMES=1000000` changes so many of them, `FC_SEED` makes
-//! it others.
+//! The frames are random changes of the committed vectors. `FC_FRAMES=1000000` sets their number, and `FC_SEED` selects
+//! others.
 
 use crate::mutate;
 use crate::mutate::Random;
@@ -17,7 +17,7 @@ fn typed_and_reflected_decoding_agree() {
     let model = support::specs::model();
     let reflector = Reflector::new(&model);
     let allowance = Fc::DEFAULTS.limits.json();
-    // One body in eight may cost next to nothing.
+    // One frame in eight is read with narrow limits.
     let narrow = Limits {
         json_depth: 4,
         json_values: 12,
@@ -56,11 +56,11 @@ fn typed_and_reflected_decoding_agree() {
         }
     }
     println!("{count} frames: {found:?}");
-    // They are neither all refused nor all taken, and refused for many reasons.
+    // A useful mix has enough accepted frames, and refusals for many reasons.
     assert!(found["taken"] * 10 > count && found.len() > 20, "{found:?}");
 }
 
-/// What the model at run time makes of a frame, as the typed side tells it.
+/// Returns the result of the model at run time as a verdict of the typed side.
 fn verdict(decoded: &Result<Decoded<'_>, Error>) -> Verdict {
     match decoded {
         Ok(decoded) => {
@@ -90,7 +90,8 @@ fn verdict(decoded: &Result<Decoded<'_>, Error>) -> Verdict {
     }
 }
 
-/// Both sides make the same frame of the same message, compressed or not; its canonical text is read as itself.
+/// Checks that both sides encode a message to the same frame, compressed or not. The canonical text encodes to that
+/// frame too.
 fn written_alike(reflector: &Reflector<'_>, decoded: &Decoded<'_>, place: &str) {
     let id = decoded.frame.id;
     let data = match (&decoded.message, decoded.frame.operation) {
@@ -117,7 +118,7 @@ fn written_alike(reflector: &Reflector<'_>, decoded: &Decoded<'_>, place: &str) 
     let plain = wanted(Encoder::new());
     assert_eq!(sent(Packing::Plain, &decoded.frame.data), plain, "{place}");
     assert_eq!(sent(Packing::Plain, &data), plain, "{place}");
-    // A compressor is costly to make.
+    // Creating a compressor is slow, so only some messages are compressed.
     if data.len() % 8 == 0 {
         let gzip = Gzip {
             from_bytes: 0,

@@ -1,4 +1,4 @@
-//! The bodies of a small protocol of the tests' own, with every shape that the language has.
+//! Bodies of the small protocol of these tests, which has every shape of the language.
 
 #[allow(dead_code, reason = "other tests need more")]
 use crate::support::specs;
@@ -9,14 +9,14 @@ use fc_spec::model::{Model, Quirk, Scalar, Type};
 
 const ID: u32 = 0x0102_0304;
 
-/// The request of `set_light` with these keys.
+/// Reads `text` as a request of `set_light`.
 fn request<'m>(reflector: &Reflector<'m>, model: &'m Model, text: &str) -> Message<'m> {
     let operation = model.operation("set_light");
     let message = reflector.message(operation, Direction::Request, text.as_bytes());
     message.unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// Fault, path and place of a request of `set_light`.
+/// Returns error, path and offset of an invalid request of `set_light`.
 fn fault(reflector: &Reflector<'_>, model: &Model, text: &str) -> (BodyErrorKind, String, usize) {
     let operation = model.operation("set_light");
     let message = reflector.message(operation, Direction::Request, text.as_bytes());
@@ -155,7 +155,7 @@ fn lenient_reading_is_reported() {
     );
 }
 
-/// Texts of requests, and what is wrong with them: fault, path and place.
+/// Invalid requests, each with its error, path and offset.
 const WRONG: &[(&str, BodyErrorKind, &str, usize)] = &[
     ("", BodyErrorKind::MissingField, "lvl", 0),
     (r#"{"lvl":0}"#, BodyErrorKind::OutOfRange, "lvl", 0),

@@ -1,4 +1,5 @@
-//! What the crate stands on: a model, the JSON and gzip of the runtime and a few libraries, no generated code, and no I/O.
+//! The crate depends on the model, the JSON and gzip of the runtime and a few libraries. It uses no generated code and
+//! does no I/O.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Of several faults in one body, that of `conformance/faults.json` is named.
+//! A body with several errors is refused with the error that `conformance/faults.json` specifies.
 
 use crate::support;
 use crate::support::typed::{Typed, Verdict};

@@ -1,4 +1,4 @@
-//! The frames of a small protocol of the tests' own: little-endian, with another header.
+//! Frames of the small protocol of these tests, which is little-endian and has a different header.
 
 #[allow(dead_code, reason = "other tests need more")]
 use crate::support::specs;
@@ -38,7 +38,7 @@ fn the_header_is_laid_out_as_the_model_says() {
     wanted.extend(b"{}");
     assert_eq!(frame, wanted);
 
-    // Other bytes behind it are somebody else's.
+    // Bytes after the frame belong to the next one.
     let mut longer = frame.clone();
     longer.extend(b"LA");
     let Decoded {
@@ -105,7 +105,7 @@ fn streams_carry_bytes_and_codes_belong_to_their_kind() {
     assert_eq!(decoded.frame.data, b"\xFF\x00{");
     assert_eq!(decoded.frame.operation.expect("known").name, "film");
 
-    // The same code as a command is nobody's.
+    // No command has this code.
     let other = fc_reflect::FrameId { kind: 0x20, ..id };
     let frame = reflector
         .encode(other, br#"{"at":1,"b":[ 2]}"#, Packing::Plain)
@@ -195,7 +195,7 @@ fn every_limit_is_held() {
         "too_deep"
     );
 
-    // A mebibyte may come of anything; more only of text that is not all the same.
+    // Any data may inflate to 1 MiB. Larger data must respect the ratio limit, which blank text exceeds.
     let wide = Limits {
         frame_bytes: 1 << 22,
         inflated_bytes: 1 << 22,
@@ -207,7 +207,7 @@ fn every_limit_is_held() {
     let bomb = reflector.seal(command, blank.as_bytes(), Packing::Gzip { level: 9 });
     let bomb = bomb.expect("short");
     assert_eq!(refused(wide, &bomb), "inflates_too_much");
-    // A picture may be blank.
+    // The ratio limit does not apply to streams: a picture may be blank.
     let picture = reflector.seal(id, blank.as_bytes(), Packing::Gzip { level: 9 });
     assert!(reflector.decode(&picture.expect("short")).is_ok());
     let generous = Limits {
@@ -227,7 +227,7 @@ fn header_and_length_of_an_invalid_frame_can_be_read() {
     let model = specs::small();
     let reflector = Reflector::new(&model);
     let mut frame = encode(&reflector, &model, "unknown_body", "{}");
-    // Another kind.
+    // Sets an unknown kind.
     frame[38] = 0x77;
     let error = reflector.frame(&frame).expect_err("invalid");
     assert_eq!(error.fault, FrameFault::UnknownKind);
@@ -236,6 +236,6 @@ fn header_and_length_of_an_invalid_frame_can_be_read() {
     assert_eq!(header.len(), 10);
     assert_eq!(header[7].content, HeaderContent::Int(0x77));
     assert_eq!(header[7].span, 38..39);
-    // It ends before a field without all of its bytes.
+    // The header ends before the first incomplete field.
     assert_eq!(reflector.header(&frame[..38]).len(), 7);
 }

@@ -1,15 +1,16 @@
-//! Decoders in other languages make the same of the same bytes as the one in Rust.
+//! Compares the decoders of other languages with the one in Rust, on the same bytes.
 //!
-//! `FC_JUDGES='python=stubs/python/run judge;cpp=stubs/cpp/run judge'` names them, each with its command from the
-//! project's root. `FC_FRAMES` and `FC_SEED` are as in `agreement`. `FC_FOREIGN` names a folder of JSON texts instead: those
-//! called `y_…` have to be taken, those called `n_…` refused.
+//! `FC_JUDGES='python=stubs/python/run judge;cpp=stubs/cpp/run judge'` lists the judges, each with its command from the
+//! project's root. `FC_FRAMES` and `FC_SEED` are as in `agreement`. Alternatively, `FC_FOREIGN` names a folder of JSON
+//! files. All decoders must accept the files called `y_…` and refuse those called `n_…`.
 //!
-//! A judge reads frames, each in hex on a line of its own, and answers each with a line, a list in JSON:
+//! A judge reads frames in hex, one per line. It writes one line for each frame, a list in JSON:
 //!
-//! - `["refused", "out_of_range", "data.mode"]`: the error's name, and the path in the body, empty for the frame's own;
-//! - `["message", 0, 1, 2564, 7, "{…}"]`: 1 for a response, kind, code and id of the header, and the message as it is
-//!   written again;
-//! - `["bytes", 0, 3, 513, 7, "0a0b"]`: the same of what has no message: its data in hex.
+//! - `["refused", "out_of_range", "data.mode"]`: the name of the error, and the path in the body. The path is empty if
+//!   the frame itself is wrong.
+//! - `["message", 0, 1, 2564, 7, "{…}"]`: 1 for a response, then kind, code and ID of the header, and the encoded
+//!   message.
+//! - `["bytes", 0, 3, 513, 7, "0a0b"]`: the same for a frame without a message, with its data in hex.
 
 use crate::mutate::{self, Random};
 use crate::support::typed::{Typed, Verdict};
@@ -53,7 +54,7 @@ fn judges_agree() {
     for (number, (name, bytes)) in foreign.iter().flatten().enumerate() {
         let verdict = typed.verdict(bytes, Fc::DEFAULTS.limits.json());
         let is_taken = matches!(verdict, Verdict::Taken { .. });
-        // A body has to be an object, and may be empty.
+        // Odd frames have the JSON as a value. Even frames have it as a body, which must be an object and may be empty.
         let is_value = number % 2 == 1;
         let expected = name.starts_with("y_");
         if is_value && (expected || name.starts_with("n_")) {
@@ -66,7 +67,7 @@ fn judges_agree() {
         let frames = child.stdin.take().expect("a pipe");
         let mut answers = BufReader::new(child.stdout.take().expect("a pipe")).lines();
         let mut found: BTreeMap<&str, u64> = BTreeMap::new();
-        // The first of each kind of disagreement, and how many there are of it.
+        // The first disagreement of each kind, and their number.
         let mut faults: BTreeMap<String, (String, u64)> = BTreeMap::new();
         thread::scope(|scope| {
             let frame = &frame;
@@ -110,8 +111,8 @@ fn judges_agree() {
     }
 }
 
-/// Requests of an unknown command with the texts of a folder, each with the name of its file: as a body, and as the value
-/// of a key.
+/// Wraps each file of a folder in requests of an unknown command: once as the body, and once as the value of a key.
+/// Each request comes with the name of its file.
 fn foreign_frames(folder: &str, model: &Model) -> Vec<(String, Vec<u8>)> {
     let files = fs::read_dir(folder).expect("the folder of FC_FOREIGN");
     let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
@@ -145,8 +146,8 @@ fn foreign_frames(folder: &str, model: &Model) -> Vec<(String, Vec<u8>)> {
     frames.collect()
 }
 
-/// Ends a judge that disagrees, also where its answer is no text at all: it may not read on, and then nobody could go on
-/// writing.
+/// Kills a judge that disagrees or whose output is invalid. Such a judge may stop reading, which would block the
+/// writer.
 struct Listening<'c> {
     judge: &'c mut Child,
     is_content: bool,
@@ -155,7 +156,7 @@ struct Listening<'c> {
 impl Drop for Listening<'_> {
     fn drop(&mut self) {
         if !self.is_content {
-            // Where it has ended, there is nothing to end.
+            // The judge may have ended already.
             let _ = self.judge.kill();
         }
     }
@@ -170,7 +171,7 @@ fn start(command: &str) -> Child {
     piped.spawn().expect("bash")
 }
 
-/// Ends early where nobody reads any more; the reason shows in the answers.
+/// Writes the frames. It stops early when the judge no longer reads; the responses show the reason.
 fn send(pipe: ChildStdin, frames: impl Iterator<Item = Vec<u8>>) {
     let mut pipe = BufWriter::new(pipe);
     for bytes in frames {
@@ -180,7 +181,7 @@ fn send(pipe: ChildStdin, frames: impl Iterator<Item = Vec<u8>>) {
     }
 }
 
-/// What a judge's line says, without its details.
+/// Returns the verdict of a judge's line without its details.
 fn summary(line: &str) -> String {
     match serde_json::from_str::<Value>(line) {
         Ok(Value::Array(answer)) => {
@@ -191,12 +192,12 @@ fn summary(line: &str) -> String {
     }
 }
 
-/// Whether the data of a frame is said to be compressed.
+/// Returns `true` if the header marks the data as compressed.
 fn packed(bytes: &[u8]) -> bool {
     FrameHeader::read(bytes).is_some_and(|header| Some(header.encoding()) == Fc::GZIP)
 }
 
-/// Whether a judge's line says what is wanted.
+/// Returns `true` if a judge's line matches the expected verdict.
 fn agrees(wanted: &Verdict, line: &str, packed: bool) -> bool {
     let Ok(Value::Array(answer)) = serde_json::from_str(line) else {
         return false;
@@ -205,9 +206,11 @@ fn agrees(wanted: &Verdict, line: &str, packed: bool) -> bool {
     let int = |at: usize| answer.get(at).and_then(Value::as_u64);
     match wanted {
         Verdict::Refused(name, path, _) => {
-            // Of what is no JSON, a judge need not know where in the message it is. Here a key stands as it was written.
+            // A judge need not locate malformed JSON. Paths with escapes are not compared, because this side keeps keys
+            // as written.
             let knows_place = word(2) != Some("") && !path.contains('\\');
-            // What is too long and damaged besides may be called either: it depends on how far a library has unpacked it.
+            // Data that is too long and also damaged may get either name. That depends on how far a library has
+            // inflated it.
             let name_agrees = word(1) == Some(name)
                 || (packed && *name == "plain_length_mismatch" && word(1) == Some("bad_gzip"));
             word(0) == Some("refused") && name_agrees && (!knows_place || word(2) == Some(path))
@@ -238,15 +241,15 @@ fn agrees(wanted: &Verdict, line: &str, packed: bool) -> bool {
     }
 }
 
-/// The same JSON, with its keys in the same order: numbers and texts may be spelled in other ways. What is passed on as it came
-/// may hold what no reader takes for a value, such as half of a surrogate pair, and a key twice.
+/// Compares two JSON values with the same order of keys. Numbers and strings may be spelled differently. Data that
+/// passes through unread may contain half of a surrogate pair or a duplicate key, which `Value` cannot hold.
 fn same_text(one: &[u8], other: &[u8]) -> bool {
     let value = |bytes| serde_json::from_slice::<&RawValue>(bytes).ok();
     one == other || value(one).is_some_and(|one| value(other).is_some_and(|other| same(one, other)))
 }
 
 fn same(one: &RawValue, other: &RawValue) -> bool {
-    /// Both as something, if they are that, and compared.
+    /// Reads both as `T` and compares them; `false` if one of them is not a `T`.
     fn both<'r, T: Deserialize<'r>>(
         one: &'r RawValue,
         other: &'r RawValue,
@@ -263,7 +266,7 @@ fn same(one: &RawValue, other: &RawValue) -> bool {
         }),
         (b'[', b'[') => both(one, other, |one: &Vec<_>, other| all_same(one, other)),
         (b'"', b'"') => both(one, other, |Text(one), Text(other)| one == other),
-        // Words, too: they are the same if they are spelled so.
+        // This also compares `true`, `false` and `null`, by their spelling.
         _ => same_number(one.get(), other.get()),
     }
 }
@@ -272,7 +275,8 @@ fn all_same(one: &[&RawValue], other: &[&RawValue]) -> bool {
     one.len() == other.len() && zip(one, other).all(|(one, other)| same(one, other))
 }
 
-/// 10 is 10.0 and 1e1. Past what a double tells from its neighbours, integers are compared by their digits.
+/// Treats 10, 10.0 and 1e1 as equal. Two integers are compared by their digits, because a double cannot tell large
+/// neighbours apart.
 fn same_number(one: &str, other: &str) -> bool {
     let is_float = |number: &str| number.contains(['.', 'e', 'E']);
     let value = |number: &str| number.parse().ok().filter(|value: &f64| value.is_finite());
@@ -281,7 +285,7 @@ fn same_number(one: &str, other: &str) -> bool {
             && value(one).is_some_and(|one| value(other) == Some(one)))
 }
 
-/// The keys and values of an object, one after the other, as they stand.
+/// The keys and values of an object in turn, as written.
 struct Entries<'r>(Vec<&'r RawValue>);
 
 impl<'r> Deserialize<'r> for Entries<'r> {
@@ -306,7 +310,7 @@ impl<'r> Deserialize<'r> for Entries<'r> {
     }
 }
 
-/// What a text stands for, in WTF-8, which has room for halves of pairs.
+/// The content of a string in WTF-8, which can hold half of a surrogate pair.
 struct Text(Vec<u8>);
 
 impl<'r> Deserialize<'r> for Text {

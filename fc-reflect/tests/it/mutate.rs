@@ -1,5 +1,5 @@
-//! Frames changed at random: bytes, header fields, compressed data, and bodies by their grammar, so that most of what
-//! comes out still is a frame and much of it still is JSON.
+//! Changes frames at random: bytes, header fields, compressed data, and bodies by their grammar. Most results are still
+//! frames, and many bodies are still JSON.
 
 use crate::support::{cases, unhex};
 use fc_generated::{Fc, FrameHeader};
@@ -8,7 +8,7 @@ use fc_runtime::digest::{DigestAlgorithm as _, Md5};
 use fc_runtime::{Header as _, Protocol as _};
 use serde_json::Value;
 
-/// A generator of random numbers (SplitMix64): the same for the same seed, on every machine.
+/// A generator of random numbers (SplitMix64). The same seed gives the same numbers on every machine.
 pub struct Random(pub u64);
 
 impl Random {
@@ -20,7 +20,7 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// A number below `limit`, which is not 0.
+    /// Returns a number below `limit`, which must not be 0.
     pub fn below(&mut self, limit: usize) -> usize {
         usize::try_from(self.next() % limit as u64).unwrap()
     }
@@ -34,19 +34,19 @@ impl Random {
     }
 }
 
-/// What frames are made of.
+/// The material for random frames.
 pub struct Seeds {
     /// Whole frames.
     pub frames: Vec<Vec<u8>>,
-    /// Data with what its header says, of vectors that are taken.
+    /// Header and data of the vectors that decoders accept.
     pub good: Vec<(FrameId, Vec<u8>)>,
-    /// The same of vectors whose body is refused.
+    /// Header and data of the vectors whose body decoders refuse.
     pub bad: Vec<(FrameId, Vec<u8>)>,
     /// Keys of all bodies.
     pub keys: Vec<String>,
 }
 
-/// A frame made of one of the seeds.
+/// Returns a frame made from one of the seeds.
 pub fn frame(random: &mut Random, seeds: &Seeds, reflector: &Reflector<'_>) -> Vec<u8> {
     if random.one_in(10) {
         let mut bytes = random.pick(&seeds.frames).clone();
@@ -62,7 +62,7 @@ pub fn frame(random: &mut Random, seeds: &Seeds, reflector: &Reflector<'_>) -> V
     };
     let (mut id, data) = random.pick(some).clone();
     if random.one_in(20) {
-        // A body of another operation, or the other way round.
+        // Combines the data with the header of another operation.
         id = random.pick(&seeds.good).0;
     }
     let mut data = match serde_json::from_slice(&data) {
@@ -88,14 +88,14 @@ pub fn frame(random: &mut Random, seeds: &Seeds, reflector: &Reflector<'_>) -> V
     bytes
 }
 
-/// One byte is another, too many or missing, or the end is.
+/// Changes, inserts or removes one byte, or truncates the bytes.
 fn change_a_byte(random: &mut Random, bytes: &mut Vec<u8>) {
     const BYTES: &[u8] = b"\x00\x01\x7F\x80\xFF{}[]\",:\\0e- \n";
     if bytes.is_empty() {
         bytes.push(b'{');
         return;
     }
-    // The header more often than it is long.
+    // Half of the changes hit the header, although it is short.
     let reach = if random.one_in(2) {
         FrameHeader::LEN
     } else {
@@ -112,7 +112,7 @@ fn change_a_byte(random: &mut Random, bytes: &mut Vec<u8>) {
     }
 }
 
-/// A byte of the header, whatever field it belongs to.
+/// Changes one byte of the header in any field.
 fn change_the_header(random: &mut Random, bytes: &mut [u8]) {
     let at = random.below(FrameHeader::LEN);
     bytes[at] = match random.below(3) {
@@ -122,14 +122,14 @@ fn change_the_header(random: &mut Random, bytes: &mut [u8]) {
     };
 }
 
-/// The data as sent, with lengths and digest made for it.
+/// Changes the data as sent and writes a header whose length and digest fit the new data.
 fn change_what_is_sent(random: &mut Random, bytes: &mut Vec<u8>) {
     let Some(header) = FrameHeader::read(bytes) else {
         return;
     };
     let mut sent = bytes.split_off(FrameHeader::LEN);
     for _ in 0..=random.below(2) {
-        // The wrapper of a gzip member more often than it is long.
+        // Most changes hit the header and trailer of the gzip member, although they are short.
         let at = match random.below(4) {
             _ if sent.is_empty() => break,
             0 | 1 => random.below(sent.len().min(12)),
@@ -166,7 +166,7 @@ fn change_what_is_sent(random: &mut Random, bytes: &mut Vec<u8>) {
     bytes.extend(sent);
 }
 
-/// JSON with the texts of its keys and values as they are sent.
+/// JSON whose scalars and keys keep their encoded spelling.
 enum Json {
     Text(String),
     List(Vec<Json>),
@@ -246,7 +246,7 @@ const VALUES: &[&str] = &[
     r#"{"a":1}"#,
     r#"{"a":1,"a":2}"#,
     r#"{"\ud800":1}"#,
-    // No JSON.
+    // These are not JSON.
     "01",
     "+1",
     "1.",
@@ -263,10 +263,10 @@ const VALUES: &[&str] = &[
     "",
 ];
 
-/// A body with a few changes.
+/// Returns a body with up to three changes.
 fn body(random: &mut Random, seeds: &Seeds, value: Value) -> String {
     let mut json = taken(value);
-    // Some stay as they are.
+    // Some bodies stay unchanged.
     for _ in 0..random.below(4) {
         change(random, seeds, &mut json, 0);
     }
@@ -291,7 +291,7 @@ fn taken(value: Value) -> Json {
     }
 }
 
-/// Changes a place of `json`, the nearer the more often.
+/// Changes one place of `json`. Places near the root change more often.
 fn change(random: &mut Random, seeds: &Seeds, json: &mut Json, depth: usize) {
     let goes_deeper = depth == 0 || !random.one_in(3);
     match json {
@@ -349,7 +349,7 @@ fn some_value(random: &mut Random) -> Json {
     Json::Text((*random.pick(VALUES)).to_owned())
 }
 
-/// Keys of the spec, in quotes, and a few that are none.
+/// Returns a key: mostly one of the spec in quotes, sometimes another or an invalid one.
 fn some_key(random: &mut Random, seeds: &Seeds) -> String {
     const OTHERS: &[&str] = &[
         r#""x""#,
@@ -367,7 +367,7 @@ fn some_key(random: &mut Random, seeds: &Seeds) -> String {
     Value::String(random.pick(&seeds.keys).clone()).to_string()
 }
 
-/// A key with one of its characters escaped, which is the same key.
+/// Escapes one character of a key, which leaves its meaning unchanged.
 fn escaped(random: &mut Random, key: &str) -> String {
     let characters: Vec<char> = key.chars().collect();
     if characters.len() < 3 {
@@ -381,7 +381,7 @@ fn escaped(random: &mut Random, key: &str) -> String {
     characters.iter().enumerate().map(escape).collect()
 }
 
-/// Nested about as deep as is allowed.
+/// Returns a list nested about as deep as the limit.
 fn deep(random: &mut Random) -> Json {
     let depth = 58 + random.below(10);
     Json::Text("[".repeat(depth) + &"]".repeat(depth))
@@ -426,7 +426,7 @@ fn print(random: &mut Random, spaced: bool, json: &Json, out: &mut String) {
     }
 }
 
-/// The seeds in the committed vectors.
+/// Collects the seeds from the committed vectors.
 pub fn seeds(files: &[(String, Value)], reflector: &Reflector<'_>) -> Seeds {
     let mut seeds = Seeds {
         frames: Vec::new(),

@@ -1,4 +1,5 @@
-//! The names of errors of frames are those of the list that all implementations share. Those of bodies are the runtime's.
+//! The names of frame errors match the list that all implementations share. The names of body errors come from the
+//! runtime.
 
 use fc_reflect::FrameFault;
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! Messages and frames made of the examples of a spec, and answers to what has been decoded.
+//! Messages and frames made from the examples of a spec, and responses to decoded requests.
 
 use crate::support;
 use crate::support::typed::{Typed, Verdict};
@@ -10,14 +10,14 @@ use fc_spec::model::{EnvelopeRole, Kind, Model, Operation, ResultCode, ResultRol
 
 const PACKINGS: [Packing; 2] = [Packing::Plain, Packing::Gzip { level: 6 }];
 
-/// The project's own model, and those of other protocols.
+/// The project's own model, and the models of other protocols.
 fn models() -> Vec<Model> {
     let mut models = vec![support::specs::model()];
     models.extend(support::specs::others());
     models
 }
 
-/// The operations that frames can carry, with each direction in which they carry something.
+/// Returns the operations that have a code, with each direction in which they send a frame.
 fn sides(model: &Model) -> impl Iterator<Item = (&Operation, Direction)> {
     let coded = |operation: &&Operation| operation.code.value.is_some();
     let operations = model.operations.iter().filter(coded);
@@ -27,7 +27,7 @@ fn sides(model: &Model) -> impl Iterator<Item = (&Operation, Direction)> {
     })
 }
 
-/// A frame of the sample, taken apart again.
+/// Returns the sample frame of an operation, encoded and decoded.
 fn sample<'m>(
     reflector: &Reflector<'m>,
     operation: &Operation,
@@ -75,7 +75,7 @@ fn every_sample_is_read_as_what_it_was_made_of() {
     }
 }
 
-/// What the node under the key of this role says.
+/// Returns the value of the envelope field with this role.
 fn under<'a>(envelope: &'a [Node<'_>], model: &Model, role: EnvelopeRole) -> Option<&'a Value<'a>> {
     let field = model
         .envelope
@@ -86,7 +86,7 @@ fn under<'a>(envelope: &'a [Node<'_>], model: &Model, role: EnvelopeRole) -> Opt
     Some(&node.value)
 }
 
-/// The answers to a request: the example, and one for each result of the spec.
+/// Returns the responses to a request: the example, and one for each result of the spec.
 fn answers<'m>(
     model: &'m Model,
     reflector: &Reflector<'m>,
@@ -185,7 +185,7 @@ fn generated_package_reads_samples_and_answers() {
                 if result.is_none_or(is_whole) {
                     assert_eq!(taken(&bytes, &operation.name), data, "{}", operation.name);
                 }
-                // A refusal has nothing but an envelope, which is all that is read of it.
+                // A refusal contains only an envelope.
                 let read =
                     read_enveloped::<<Fc as Protocol>::Response, Empty>(&data, Allowance::ANY);
                 let envelope = read.expect("an envelope").envelope;
@@ -216,7 +216,7 @@ fn operation_without_response_has_no_answer() {
     let film = reflector.id(film, Direction::Request, 7).expect("a code");
     assert!(answer(film, result).is_none());
 
-    // Of a code that nobody knows the result can be told, and nothing else.
+    // A request with an unknown code can be refused, but has no sample response.
     let unknown = FrameId {
         code: 0xFFFF,
         ..light
@@ -247,7 +247,7 @@ fn operation_without_response_has_no_answer() {
     );
 }
 
-/// Without a result code a response could only say that all went well.
+/// A response without a result code can only report success.
 #[test]
 fn protocol_without_results_has_no_refusal() {
     let silent = |model: &Model| model.envelope.result_code().is_none();

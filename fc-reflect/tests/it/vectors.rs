@@ -1,4 +1,4 @@
-//! The golden frames and bodies that every product of the spec is held to, read and written by the model alone.
+//! Reads and writes the golden frames and bodies with the model alone.
 
 use crate::support::{self, cases, hex, unhex};
 use fc_codegen::emit::generate;
@@ -18,7 +18,7 @@ fn every_frame_is_read_and_written_as_its_vector_says() {
     assert!(count > 1000, "{count}");
 }
 
-/// Of protocols that no package is generated for here, the generator makes the vectors.
+/// The repository has no vectors of these protocols, so the test generates them.
 #[test]
 fn vectors_of_other_protocols_hold_as_well() {
     for model in support::specs::others() {
@@ -33,7 +33,7 @@ fn vectors_of_other_protocols_hold_as_well() {
     }
 }
 
-/// Checks all files but the one about JSON itself, and counts their vectors.
+/// Checks all files except the one about JSON itself, and counts their vectors.
 fn all_hold(model: &Model, files: Vec<(String, Value)>) -> usize {
     let reflector = Reflector::new(model);
     let mut count = 0;
@@ -56,7 +56,7 @@ fn all_hold(model: &Model, files: Vec<(String, Value)>) -> usize {
     count
 }
 
-/// What a vector holds: a frame, or the text of a message that has no code.
+/// Reads a vector, which is a frame or the text of a message without a code.
 fn read<'m>(
     model: &'m Model,
     reflector: &Reflector<'m>,
@@ -66,7 +66,7 @@ fn read<'m>(
     if let Some(frame) = vector["frame"].as_str() {
         let bytes = unhex(frame);
         let decoded = if name == "frames" {
-            // These are about frames alone: some have no body that their envelope would allow.
+            // These vectors are about frames only. Some have a body that the envelope does not allow.
             Decoded {
                 frame: reflector.frame(&bytes)?,
                 message: None,
@@ -148,7 +148,7 @@ fn compare_header(decoded: &Decoded<'_>, bytes: &[u8], expected: &Value, place: 
     ] {
         let found = decoded.frame.field(role).map_or(Value::Null, |field| {
             match field.content {
-                // Of a digest, the bytes as they are sent.
+                // The vectors have digests in hex, as sent.
                 HeaderContent::Int(value) if role != HeaderRole::Digest => value.into(),
                 _ => hex(&bytes[field.span.clone()]).into(),
             }
@@ -157,7 +157,7 @@ fn compare_header(decoded: &Decoded<'_>, bytes: &[u8], expected: &Value, place: 
     }
 }
 
-/// `bodies.json` belongs to no spec: each body is one of a message of one key, of each type in turn.
+/// `bodies.json` belongs to no spec. The test builds one with a command for each type, whose body has one key.
 #[test]
 fn every_body_is_read_and_written_as_the_rules_say() {
     let files = support::vectors();
@@ -186,7 +186,7 @@ fn every_body_is_read_and_written_as_the_rules_say() {
         .unwrap();
     }
     commands.push_str("\ntypes:\n  One:\n    zh: 一\n    en: One\n    fields:\n      value: { type: \"i32?\", example: 1, zh: 一, en: One }\n");
-    // As deep as any reader goes.
+    // Uses the greatest depth that a reader supports.
     let protocol = support::specs::SMALL.replace("json_depth: 12", "json_depth: 127");
     let model = support::specs::model_of(&protocol, &commands);
     let reflector = Reflector::new(&model);

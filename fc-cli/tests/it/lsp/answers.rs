@@ -1,4 +1,4 @@
-//! What is answered about a place.
+//! Responses about a position: hover, definition, references and symbols.
 
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ fn hover_explains_in_both_languages() {
     let project = project();
     let mut editor = editor(&project);
     for (path, marked, parts) in [
-        // A key, a word of it, a unit, a built-in type.
+        // A key, its value, a unit and a built-in type.
         (
             LAMP,
             "    eff|ect: motion",
@@ -35,7 +35,7 @@ fn hover_explains_in_both_languages() {
             &["`mm`", "Millimetres.", "毫米。"],
         ),
         (TYPES, "type: u|16, unit", &["`u16`"]),
-        // A type, declared or named: its texts, Rust and JSON.
+        // A type at its declaration or its use: texts, Rust and JSON.
         (
             TYPES,
             "  Sp|ot:\n",
@@ -58,7 +58,7 @@ fn hover_explains_in_both_languages() {
             "mood: { type: \"M|ood?\"",
             &["**enum** `Mood`", "pub enum Mood"],
         ),
-        // An operation, declared or named.
+        // An operation at its declaration or its use.
         (
             LAMP,
             "  set_|level:\n",
@@ -75,7 +75,7 @@ fn hover_explains_in_both_languages() {
             "after: [get_l|evel, probe]",
             &["**command** `get_level`", "Get the level"],
         ),
-        // A field, an enum value, an entity, a gap.
+        // A field, an enum value, an entity and a gap.
         (
             TYPES,
             "      si|ze:",
@@ -100,7 +100,7 @@ fn hover_explains_in_both_languages() {
             assert!(text.contains(part), "{part:?} of {marked}: {text}");
         }
     }
-    // The client's language is first.
+    // The language of the client comes first.
     for (locale, first) in [("zh-CN", "光斑\n\nA spot"), ("en-GB", "A spot\n\n光斑")] {
         let mut editor = editor_in(&project, locale);
         assert!(
@@ -158,7 +158,7 @@ fn a_name_leads_to_what_it_names() {
         );
         let (file, _) = target.split_once(':').expect("a line");
         assert!(found[0].starts_with(file), "{marked}: {found:?}");
-        // And it is the place that `fcproto where` names.
+        // `fcproto where` names the same place.
         let run = project.fc(&["where", name]);
         let (at, _) = found[0].split_once(' ').expect("a place");
         assert!(
@@ -200,7 +200,7 @@ fn references_are_found_in_all_files() {
         ask(&mut editor, PROTOCOL, "  sce|ne: {", false),
         ["scene"; 3]
     );
-    // As a type of fields, and as the key of a condition.
+    // `Phase` is the type of fields and the key of a condition.
     assert_eq!(ask(&mut editor, TYPES, "  Pha|se:\n", false), ["Phase"; 4]);
     assert_eq!(ask(&mut editor, LAMP, "  ala|rm:\n", true), ["alarm"; 2]);
 }

@@ -1,15 +1,15 @@
-//! What is offered while one writes.
+//! Completion in incomplete text.
 
 use serde_json::{Value, json};
 
 use crate::lsp::editor::{Editor, editor};
 use crate::lsp::{LAMP, TYPES, project};
 
-/// What is offered at a mark, after `old` has become `new`, which has the mark.
+/// Replaces `old` with `new` and returns the items at the mark in `new`.
 fn offered(editor: &mut Editor<'_>, path: &str, old: &str, new: &str) -> Vec<Value> {
     let before = editor.text(path).to_owned();
     editor.replace(path, old, &new.replacen('|', "", 1));
-    // Whatever is wrong with the text, before and after that has been found out.
+    // The text may have errors. The server must respond before and after it has found them.
     editor.ask_at("textDocument/completion", path, new);
     editor.faults(path);
     let items = editor.ask_at("textDocument/completion", path, new);
@@ -23,7 +23,7 @@ fn completion_offers_valid_words() {
     let project = project();
     let mut editor = editor(&project);
     for (path, old, new, wanted, unwanted) in [
-        // Keys: in braces, on a line of their own, where the form is not known yet, at the top.
+        // Keys: in braces, on their own line, in a form that is not known yet, and at the top.
         (
             TYPES,
             "{ type: u16, unit: mm",
@@ -65,7 +65,7 @@ reports:
             "retries",
             "timeout_ms",
         ),
-        // Words, types, units.
+        // Words, types and units.
         (LAMP, "effect: motion\n", "effect: |\n", "config", "Spot"),
         (
             LAMP,
@@ -96,7 +96,7 @@ reports:
             "m/s",
             "Spot",
         ),
-        // Names of what the spec has.
+        // Names that the spec declares.
         (
             LAMP,
             "refers: person, example",
@@ -141,7 +141,7 @@ reports:
             "Phase",
             "Spot",
         ),
-        // The next code.
+        // The next free code.
         (LAMP, "code: unassigned\n", "code: |\n", "0x0105", "0x0101"),
         (LAMP, "code: 0x0202\n", "code: 0x|\n", "0x0202", "0x0105"),
     ] {

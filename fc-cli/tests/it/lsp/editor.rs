@@ -1,5 +1,5 @@
-//! An editor without a window: a client of the Language Server Protocol that has the command as its server, keeps the
-//! texts of open files, and makes the edits it is told.
+//! An editor without a window. It is a client of the Language Server Protocol and runs the command as its server. It
+//! keeps the text of open files and applies the edits that it receives.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::BufReader;
@@ -13,15 +13,15 @@ use serde_json::{Value, json};
 use crate::lsp::{LAMP, PROTOCOL, TYPES};
 use crate::support::{Project, command};
 
-/// After that a server that says nothing has failed; one that works answers in milliseconds.
+/// The time without a message after which the server has failed. A working server responds in milliseconds.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// An editor with the files of the spec open, and nothing wrong with them.
+/// Starts an editor with the files of the spec open, which have no errors.
 pub fn editor(project: &Project) -> Editor<'_> {
     editor_in(project, "en")
 }
 
-/// The same in another language.
+/// Starts the same editor in another language.
 pub fn editor_in<'p>(project: &'p Project, locale: &str) -> Editor<'p> {
     let mut editor = Editor::with(project, json!({ "locale": locale }));
     for path in [TYPES, LAMP, PROTOCOL] {
@@ -36,24 +36,24 @@ pub struct Editor<'p> {
     server: Child,
     stdin: Option<ChildStdin>,
     from_server: Receiver<Message>,
-    /// What came while something else was waited for.
+    /// Messages that arrived while the editor waited for another one.
     kept: VecDeque<Message>,
-    /// Texts of open files, by their paths in the project, with their versions.
+    /// The version and text of each open file, by its path in the project.
     open: BTreeMap<String, (i32, String)>,
-    /// Whether columns are counted in bytes.
+    /// `true` if columns count bytes, `false` if they count UTF-16 units.
     counts_bytes: bool,
     ids: i32,
-    /// What the server said of itself.
+    /// The capabilities that the server announced.
     pub capabilities: Value,
 }
 
 impl<'p> Editor<'p> {
-    /// An editor that has the project's root open and counts in UTF-16.
+    /// Starts an editor with the project's root open. It counts columns in UTF-16.
     pub fn start(project: &'p Project) -> Self {
         Self::with(project, json!({}))
     }
 
-    /// The same with other parameters of `initialize`.
+    /// Starts an editor with other parameters of `initialize`.
     pub fn with(project: &'p Project, params: Value) -> Self {
         let mut server = command(&["lsp"])
             .stdin(Stdio::piped())
@@ -100,7 +100,7 @@ impl<'p> Editor<'p> {
         format!("file://{}", self.project.path(path).display())
     }
 
-    /// The path in the project of a file.
+    /// Returns the path of a file in the project.
     pub fn path(&self, uri: &Value) -> String {
         let uri = uri.as_str().expect("a URI");
         let root = self.uri("");
@@ -119,7 +119,7 @@ impl<'p> Editor<'p> {
         self.send(Notification { method, params });
     }
 
-    /// Sends a request; its id.
+    /// Sends a request and returns its ID.
     pub fn request(&mut self, method: &str, params: Value) -> i32 {
         self.ids += 1;
         let id = self.ids;
@@ -127,19 +127,19 @@ impl<'p> Editor<'p> {
         id
     }
 
-    /// What a request is answered.
+    /// Sends a request and returns its result.
     pub fn ask(&mut self, method: &str, params: Value) -> Value {
         self.try_ask(method, params)
             .unwrap_or_else(|error| panic!("{method}: {error}"))
     }
 
-    /// The same, or the message of why it is not.
+    /// Sends a request and returns its result or its error.
     pub fn try_ask(&mut self, method: &str, params: Value) -> Result<Value, String> {
         let id = self.request(method, params);
         self.answer(id)
     }
 
-    /// The answer to a request that was sent.
+    /// Waits for the response to a request.
     pub fn answer(&mut self, id: i32) -> Result<Value, String> {
         let response = self.wait(|message| match message {
             Message::Response(response) if response.id == id.into() => Some(response.clone()),
@@ -151,7 +151,7 @@ impl<'p> Editor<'p> {
         response_result.map_err(|error| format!("{} {}", error.code, error.message))
     }
 
-    /// Waits for the first message of which `wanted` makes something; what comes before stays for others.
+    /// Waits for the first message for which `wanted` returns a value. Earlier messages stay available.
     pub fn wait<T>(&mut self, wanted: impl Fn(&Message) -> Option<T>) -> T {
         for (at, message) in self.kept.iter().enumerate() {
             if let Some(found) = wanted(message) {
@@ -169,13 +169,13 @@ impl<'p> Editor<'p> {
         }
     }
 
-    /// Opens a file as it is on the disk.
+    /// Opens a file with its text on disk.
     pub fn open(&mut self, path: &str) {
         let text = self.project.read(path);
         self.open_as(path, &text);
     }
 
-    /// Opens a file with another text than it has on the disk.
+    /// Opens a file with another text than on disk.
     pub fn open_as(&mut self, path: &str, text: &str) {
         self.open.insert(path.to_owned(), (1, text.to_owned()));
         let uri = self.uri(path);
@@ -189,12 +189,12 @@ impl<'p> Editor<'p> {
         self.tell("textDocument/didClose", json!({ "textDocument": document }));
     }
 
-    /// The text of an open file.
+    /// Returns the text of an open file.
     pub fn text(&self, path: &str) -> &str {
         &self.open[path].1
     }
 
-    /// Replaces the only occurrence of a text in an open file, telling the server of this part alone.
+    /// Replaces the only occurrence of `old` in an open file. The server receives this part only.
     pub fn replace(&mut self, path: &str, old: &str, new: &str) {
         let text = self.text(path);
         assert_eq!(text.matches(old).count(), 1, "{old:?} in {path}");
@@ -206,7 +206,7 @@ impl<'p> Editor<'p> {
         self.change(path, &[json!({ "range": range, "text": new })]);
     }
 
-    /// Replaces all of an open file.
+    /// Replaces the whole text of an open file.
     pub fn write(&mut self, path: &str, text: &str) {
         self.change(path, &[json!({ "text": text })]);
     }
@@ -225,7 +225,7 @@ impl<'p> Editor<'p> {
         self.tell("textDocument/didChange", params);
     }
 
-    /// What the server says is wrong in a file, once it has seen its present text.
+    /// Waits until the server has checked the current text of a file, and returns its diagnostics.
     pub fn faults(&mut self, path: &str) -> Vec<Value> {
         let uri = self.uri(path);
         let version = self.open.get(path).map(|(version, _)| *version);
@@ -240,15 +240,15 @@ impl<'p> Editor<'p> {
         })
     }
 
-    /// The codes of what is told of a file.
+    /// Returns the codes of the diagnostics of a file.
     pub fn codes(&mut self, path: &str) -> Vec<String> {
         let faults = self.faults(path);
         let codes = faults.iter().map(|fault| fault["code"].as_str());
         codes.map(|code| code.expect("a code").to_owned()).collect()
     }
 
-    /// Waits until nothing is found in a file as it is now. In between, the server may have checked it beside other files
-    /// of an edit that had not changed yet.
+    /// Waits until the current text of a file has no diagnostics. During an edit of several files, the server may first
+    /// check it next to files that are not changed yet.
     pub fn becomes_clean(&mut self, path: &str) {
         let (uri, version) = (self.uri(path), self.open[path].0);
         self.wait(|message| match message {
@@ -261,7 +261,7 @@ impl<'p> Editor<'p> {
         });
     }
 
-    /// The position right behind the `|` of a text that stands once in an open file, the `|` left out.
+    /// Returns the position of the `|` in `marked`. The text around it must occur once in the open file.
     pub fn position(&self, path: &str, marked: &str) -> Value {
         let (before, after) = marked.split_once('|').expect("a mark");
         let whole = [before, after].concat();
@@ -271,7 +271,7 @@ impl<'p> Editor<'p> {
         self.position_of(path, at + before.len())
     }
 
-    /// The position of an offset in an open file.
+    /// Returns the position of an offset in an open file.
     pub fn position_of(&self, path: &str, offset: usize) -> Value {
         let before = &self.text(path)[..offset];
         let line = before.matches('\n').count();
@@ -288,13 +288,13 @@ impl<'p> Editor<'p> {
         }
     }
 
-    /// Asks something about a marked position of an open file.
+    /// Sends a request about a marked position of an open file.
     pub fn ask_at(&mut self, method: &str, path: &str, marked: &str) -> Value {
         let params = self.at(path, marked);
         self.ask(method, params)
     }
 
-    /// The parameters of a request about a marked position.
+    /// Returns the parameters of a request about a marked position.
     pub fn at(&self, path: &str, marked: &str) -> Value {
         json!({
             "textDocument": { "uri": self.uri(path) },
@@ -302,7 +302,7 @@ impl<'p> Editor<'p> {
         })
     }
 
-    /// The text of a range of a file, which is read from the disk unless it is open.
+    /// Returns the text of a range. A file that is not open is read from disk.
     pub fn slice(&self, path: &str, range: &Value) -> String {
         let on_disk;
         let text = match self.open.get(path) {
@@ -315,7 +315,7 @@ impl<'p> Editor<'p> {
         text[self.offset(text, &range["start"])..self.offset(text, &range["end"])].to_owned()
     }
 
-    /// The texts of locations, each behind the path of its file.
+    /// Returns the text of each location after its path and line.
     pub fn slices(&self, locations: &Value) -> Vec<String> {
         let locations = locations.as_array().expect("locations");
         let texts = locations.iter().map(|location| {
@@ -347,7 +347,7 @@ impl<'p> Editor<'p> {
         text.len()
     }
 
-    /// A text after edits that do not overlap.
+    /// Returns a text after edits that do not overlap.
     fn edited(&self, text: &str, edits: &[Value], new: &str) -> String {
         let mut edits: Vec<_> = edits
             .iter()
@@ -365,14 +365,14 @@ impl<'p> Editor<'p> {
         text
     }
 
-    /// Makes the edits of a list in a file that is open.
+    /// Applies a list of edits to an open file.
     pub fn edit(&mut self, path: &str, edits: &Value) {
         let edits = edits.as_array().expect("edits").clone();
         let text = self.edited(self.text(path), &edits, "newText");
         self.write(path, &text);
     }
 
-    /// Makes an edit of the workspace, opening the files for it.
+    /// Applies an edit of the workspace and opens the files that it changes.
     pub fn apply(&mut self, edit: &Value) {
         let changes = edit["documentChanges"].as_array().expect("changes").clone();
         for change in &changes {
@@ -389,14 +389,14 @@ impl<'p> Editor<'p> {
         }
     }
 
-    /// Writes all open files to the disk.
+    /// Writes all open files to disk.
     pub fn save(&self) {
         for (path, (_, text)) in &self.open {
             self.project.write(path, text);
         }
     }
 
-    /// Ends as an editor does; the status of the server.
+    /// Shuts the server down as an editor does and returns its exit status.
     pub fn end(mut self) -> i32 {
         self.ask("shutdown", Value::Null);
         self.tell("exit", Value::Null);
@@ -406,7 +406,7 @@ impl<'p> Editor<'p> {
     }
 }
 
-/// A test that fails leaves no server behind.
+/// A failed test must not leave a server running.
 impl Drop for Editor<'_> {
     fn drop(&mut self) {
         self.stdin = None;

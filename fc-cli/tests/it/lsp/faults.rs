@@ -1,4 +1,4 @@
-//! What is said of texts while they change.
+//! Diagnostics, fixes and formatting of texts while they change.
 
 use serde_json::{Value, json};
 
@@ -12,7 +12,7 @@ fn faults_come_and_go_with_the_text() {
     editor.open(TYPES);
     assert_eq!(editor.codes(TYPES), [""; 0]);
 
-    // Of a text that is on no disk, with the same codes at the same places as on the command line.
+    // The text is not on disk yet. Its diagnostic has the same code and place as on the command line.
     editor.replace(TYPES, "type: u16, unit: mm", "type: u61, unit: mm");
     let faults = editor.faults(TYPES);
     assert_eq!(faults.len(), 1, "{faults:#?}");
@@ -62,7 +62,7 @@ fn a_change_in_one_file_shows_in_another() {
     let mut editor = Editor::start(&project);
     editor.open(TYPES);
     assert_eq!(editor.codes(TYPES), [""; 0]);
-    // `lamp.yaml` is not open, and names the type.
+    // `lamp.yaml` uses the type, but is not open.
     editor.replace(TYPES, "  Spot:\n", "  Sport:\n");
     let faults = editor.faults(LAMP);
     assert_eq!(faults.len(), 1, "{faults:#?}");
@@ -70,7 +70,7 @@ fn a_change_in_one_file_shows_in_another() {
     editor.replace(TYPES, "  Sport:\n", "  Spot:\n");
     assert_eq!(editor.codes(LAMP), [""; 0]);
 
-    // What the editor throws away is as it was on the disk.
+    // The editor discards its changes, so the text on disk counts again.
     editor.replace(TYPES, "  Spot:\n", "  Sport:\n");
     assert_eq!(editor.codes(LAMP).len(), 1);
     editor.close(TYPES);
@@ -93,7 +93,7 @@ fn changed_file_on_disk_is_read_again() {
     editor.tell("workspace/didChangeWatchedFiles", change);
     assert_eq!(editor.codes(LAMP).len(), 1);
 
-    // One that is open stays as the editor has it.
+    // An open file keeps the text of the editor.
     editor.open_as(TYPES, &types);
     assert_eq!(editor.codes(LAMP), [""; 0]);
     let change = json!({ "changes": [{ "uri": editor.uri(TYPES), "type": 2 }] });
@@ -104,7 +104,7 @@ fn changed_file_on_disk_is_read_again() {
 
 #[test]
 fn columns_are_counted_as_the_client_counts_them() {
-    // Behind characters of three and of four bytes.
+    // The columns follow characters of three and of four bytes.
     let old = "zh: 直径, en: Diameter }";
     let new = "zh: 直径😀, en: Diameter, unti: 1 }";
     for counts in ["utf-16", "utf-8"] {
@@ -125,7 +125,7 @@ fn columns_are_counted_as_the_client_counts_them() {
             _ => before.encode_utf16().count(),
         };
         assert_eq!(*column, counted, "{counts}");
-        // Further changes arrive where they are meant.
+        // Further changes apply at the right place.
         editor.replace(TYPES, ", unti: 1 }", " }");
         assert_eq!(editor.codes(TYPES), [""; 0]);
     }
@@ -137,7 +137,7 @@ fn a_text_that_is_laid_out_is_what_fc_fmt_makes_of_it() {
     let mut editor = Editor::start(&project);
     for path in [TYPES, LAMP] {
         editor.open(path);
-        // Keys in another order, blanks, a comment: nothing that means anything else.
+        // The changes move keys and add blanks and a comment. The meaning stays the same.
         let text = editor
             .text(path)
             .replacen("    zh:", "    # 中文 😀\n    zh:  ", 1);
@@ -153,7 +153,7 @@ fn a_text_that_is_laid_out_is_what_fc_fmt_makes_of_it() {
         assert_eq!(editor.text(path), project.read(path), "{path}");
         assert_eq!(editor.ask("textDocument/formatting", params), json!([]));
     }
-    // What is no YAML stays as it is.
+    // The server does not format text that is not YAML.
     editor.write(TYPES, "types: [\n");
     let params = json!({
         "textDocument": { "uri": editor.uri(TYPES) },
@@ -164,7 +164,7 @@ fn a_text_that_is_laid_out_is_what_fc_fmt_makes_of_it() {
 
 #[test]
 fn every_fix_mends_its_fault() {
-    // A slip of a key, of a type, of a word, of a unit, and a value to be quoted.
+    // Typos in a key, a built-in type, a word, an entity, a type and an operation.
     for (path, old, new) in [
         (TYPES, "unit: mm", "unti: mm"),
         (TYPES, "type: u16, unit", "type: uint16, unit"),
@@ -259,7 +259,7 @@ fn fix_all_applies_certain_fixes() {
             "context": { "diagnostics": [], "only": only },
         })
     };
-    // One letter of the key, and behind that one of the word.
+    // The first fix corrects the key, the second its value.
     for _ in 0..2 {
         let params = asked(&editor, json!(["source.fixAll"]));
         let actions = editor.ask("textDocument/codeAction", params);
@@ -274,7 +274,7 @@ fn fix_all_applies_certain_fixes() {
     }
 }
 
-/// The rules of a project that has no commands.
+/// A house rule that reports the command `set_level`.
 const NO_COMMANDS: &str = "\
 - id: no-commands
   zh: 不要指令
@@ -310,13 +310,13 @@ fn lint_findings_are_shown_without_errors() {
     editor.replace(LAMP, "effect: moton", "effect: motion");
     assert_eq!(editor.codes(LAMP), ["FC0890"]);
 
-    // The rules change on the disk, and cannot be used: that is told where they are, and nothing is found by them.
+    // The rules on disk become invalid. The error is reported in their file, and they find nothing.
     let changed = json!({ "changes": [{ "uri": editor.uri("rules.yaml"), "type": 2 }] });
     project.write("rules.yaml", &NO_COMMANDS.replace("for:", "fro:"));
     editor.tell("workspace/didChangeWatchedFiles", changed.clone());
     assert_eq!(editor.codes(LAMP), [""; 0]);
     assert_eq!(editor.codes("rules.yaml"), ["FC0101"]);
-    // One of two rules with one id shows where the other is.
+    // If two rules have one ID, the error links to the other one.
     project.write("rules.yaml", &NO_COMMANDS.repeat(2));
     editor.tell("workspace/didChangeWatchedFiles", changed.clone());
     let wrong = editor.faults("rules.yaml");

@@ -1,4 +1,4 @@
-//! What stands above things.
+//! Code lenses.
 
 use lsp_server::Message;
 use serde_json::json;
@@ -50,7 +50,7 @@ fn lenses_tell_of_codes_users_and_breaks() {
         "{of_lamp:?}"
     );
 
-    // Who can show references is told which.
+    // A client that can show references gets their places.
     let options = json!({ "showReferences": true, "lang": "zh" });
     let mut editor = Editor::with(&project, json!({ "initializationOptions": options }));
     editor.open(TYPES);

@@ -14,7 +14,7 @@ const TYPES: &str = "spec/types.yaml";
 const LAMP: &str = "spec/commands/lamp.yaml";
 const PROTOCOL: &str = "spec/protocol.yaml";
 
-/// The small project, without the lint, so that nothing is told of a file in which a test has done no wrong.
+/// Creates the small project without the lint. A file has no diagnostics until a test adds an error.
 fn project() -> Project {
     let project = Project::new();
     let off = r#"{ MINIMAL: "off", DOCS: "off", STANDARD: "off", SUNSET: "off", WIRE: "off" }"#;

@@ -1,4 +1,4 @@
-//! What renaming comes to.
+//! Renaming.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use crate::lsp::editor::{Editor, editor};
 use crate::lsp::{LAMP, PROTOCOL, TYPES, project};
 use crate::support::Project;
 
-/// The parts of the dump that say what is sent: every wire key, code and enum value.
+/// Returns the parts of the dump that define the wire format: every wire key, code and enum value.
 fn sent(project: &Project) -> Vec<String> {
     let run = project.fc(&["inspect"]).expect(0);
     let dump: Value = serde_json::from_str(&run.stdout).expect("JSON");
@@ -34,7 +34,7 @@ fn wire(value: &Value, sent: &mut Vec<String>) {
 #[test]
 fn rename_changes_names_but_not_wire_keys() {
     for (path, marked, new, parts) in [
-        // A type, from its own place and from another file's.
+        // A type, from its declaration and from another file.
         (
             TYPES,
             "  Sp|ot:\n",
@@ -79,7 +79,7 @@ fn rename_changes_names_but_not_wire_keys() {
                 (LAMP, "after: [ask_level, probe]"),
             ],
         ),
-        // A field: beside its key; over lines; one that has a name already, from its key and from its name.
+        // A field on one line, a field over several lines, and a field with a name, from its key and from its name.
         (
             TYPES,
             "      si|ze:",
@@ -107,14 +107,14 @@ fn rename_changes_names_but_not_wire_keys() {
             "caption",
             &[(LAMP, "label: {"), (LAMP, "name: caption")],
         ),
-        // An inline object, whose key has a default text.
+        // An inline object whose key has a default name.
         (
             LAMP,
             "          cho|ice:\n",
             "outcome",
             &[(LAMP, "            name: outcome\n")],
         ),
-        // An enum value, with what follows it.
+        // An enum value that another value names.
         (
             TYPES,
             "then: [burn|ing, dark]",
@@ -124,7 +124,7 @@ fn rename_changes_names_but_not_wire_keys() {
                 (TYPES, "then: [glowing, dark]"),
             ],
         ),
-        // What is declared beside.
+        // An entity, a store and a hardware name.
         (
             LAMP,
             "refers: per|son",
@@ -212,7 +212,7 @@ fn a_name_that_cannot_be_is_refused_with_the_reason() {
             "{new}: {error}"
         );
     }
-    // A wire value, a text, a word of the language.
+    // A text, a word of the language, and a key of the language.
     for (path, marked) in [
         (LAMP, "zh: |灯\n"),
         (LAMP, "effect: mot|ion"),
@@ -232,7 +232,7 @@ fn a_name_that_cannot_be_is_refused_with_the_reason() {
     }
 }
 
-/// What is wrong with a thing already does not keep it from another name, by which the fault calls it from then on.
+/// A type with an error can be renamed. The error then uses the new name.
 #[test]
 fn a_thing_with_a_fault_can_be_renamed() {
     let project = project();

@@ -1,4 +1,4 @@
-//! What comes in any order, at once, or should not come at all.
+//! Messages in an unusual order, in large numbers, or with invalid content.
 
 use serde_json::{Value, json};
 
@@ -40,7 +40,7 @@ fn invalid_messages_do_not_end_the_server() {
                 "context": { "diagnostics": [], "includeDeclaration": true },
                 "options": { "tabSize": 2, "insertSpaces": true } }),
         ] {
-            // Answered or refused: either will do.
+            // The server may respond with a result or an error.
             let _ = editor.try_ask(method, params);
         }
     }
@@ -64,7 +64,7 @@ fn invalid_messages_do_not_end_the_server() {
     ] {
         editor.tell(method, params);
     }
-    // Ends before starts, and beyond the end.
+    // A range that ends before it starts and lies beyond the end.
     let backwards = json!({ "range": { "start": far, "end": { "line": 0, "character": 3 } }, "text": "# 末尾\n" });
     let version = 2;
     let params = json!({ "textDocument": { "uri": uri, "version": version }, "contentChanges": [backwards] });
@@ -101,7 +101,7 @@ fn without_a_project_there_is_nothing_to_say() {
         editor.ask_at("textDocument/hover", "notes.yaml", "|a: 1"),
         Value::Null
     );
-    // A project below the directory that is open is found by the first file in it.
+    // The server finds a project in a subdirectory when a file of it opens.
     let inner = crate::lsp::project();
     support::copy(&inner.path("spec"), &project.path("robot/spec"));
     let path = "robot/spec/types.yaml";
@@ -112,7 +112,7 @@ fn without_a_project_there_is_nothing_to_say() {
     assert_eq!(editor.end(), 0);
 }
 
-/// Questions that are taken back, that a change overtakes, or that the end does: each has one answer.
+/// A request gets one response, even if it is cancelled, a change overtakes it, or the server shuts down first.
 #[test]
 fn each_request_gets_one_answer() {
     let project = project();
@@ -146,7 +146,7 @@ fn each_request_gets_one_answer() {
     editor.request("shutdown", Value::Null);
     for id in asked {
         if let Err(error) = editor.answer(id) {
-            // Taken back, overtaken by a change, or one too many.
+            // The request was cancelled, overtaken by a change, or refused because too many waited.
             let known = ["-32800", "-32801", "-32802"];
             assert!(known.iter().any(|code| error.starts_with(code)), "{error}");
         }

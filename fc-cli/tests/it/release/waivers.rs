@@ -1,4 +1,4 @@
-//! Waivers of changes, and what a release makes of them.
+//! Waivers of changes, and their effect on releases.
 
 use super::{break_it, change, released};
 use crate::support::Project;
@@ -35,7 +35,7 @@ fn a_waiver_accepts_one_change_for_a_time() {
     let list: Value = serde_json::from_str(&json.stdout).expect("JSON");
     assert_eq!(list[0]["waived"]["until"], "2027-03");
 
-    // The month is over.
+    // The month has ended.
     let run = project.fc(&["diff", "--today", "2027-04-01"]).expect(1);
     assert!(
         run.stdout
@@ -48,7 +48,7 @@ fn a_waiver_accepts_one_change_for_a_time() {
     assert!(run.stderr.contains("the waiver has expired"), "{run:#?}");
 }
 
-/// With a waiver, a number by the calendar will do. After the release it would accept nothing.
+/// With a waiver, a calendar number is enough. The release removes the waiver, because it no longer accepts anything.
 #[test]
 fn a_release_takes_out_the_waivers_that_have_served() {
     let project = released();
@@ -76,7 +76,7 @@ fn a_release_takes_out_the_waivers_that_have_served() {
     );
     assert_eq!(project.fc(&["diff"]).expect(0).stdout, "no changes\n");
 
-    // Put back, it accepts nothing. Against another version than the last release that cannot be said.
+    // A restored waiver accepts nothing. A comparison with another version cannot detect that.
     project.write("spec/waivers.yaml", &format!("waivers:\n{waiver}"));
     let run = project.fc(&["diff"]).expect(1);
     let unused = format!("FC0766 {id}: the waiver accepts nothing");
@@ -86,7 +86,7 @@ fn a_release_takes_out_the_waivers_that_have_served() {
         .expect(0);
 }
 
-/// A file of waivers alone stays a file that can be read.
+/// A file that contains only waivers stays valid.
 #[test]
 fn the_last_waiver_leaves_an_empty_list() {
     let project = released();

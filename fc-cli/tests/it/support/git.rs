@@ -1,13 +1,13 @@
-//! Git in a test's project, whatever is set for whoever runs the tests.
+//! Runs git in the project of a test, independent of the user's settings.
 
 use std::process::Command;
 
 use super::Project;
 
-/// What git says; whether it succeeded is for the caller to ask.
+/// Runs git. Returns `true` on success, and the output.
 pub fn run_git(project: &Project, args: &[&str]) -> (bool, String) {
     let mut command = Command::new("git");
-    // A hook of git's that runs this test names its own repository in them.
+    // If a git hook runs this test, these variables name its repository.
     for variable in [
         "GIT_DIR",
         "GIT_WORK_TREE",
@@ -35,7 +35,7 @@ pub fn run_git(project: &Project, args: &[&str]) -> (bool, String) {
     )
 }
 
-/// What git says where it has to succeed.
+/// Runs git and returns its output. Fails the test on an error.
 pub fn git(project: &Project, args: &[&str]) -> String {
     let (succeeded, text) = run_git(project, args);
     assert!(succeeded, "git {args:?}: {text}");

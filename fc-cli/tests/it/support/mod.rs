@@ -1,4 +1,4 @@
-//! A project of its own for each test, and the command run in it.
+//! A temporary project for each test, and runs of the command in it.
 
 pub mod git;
 #[cfg(unix)]
@@ -10,12 +10,12 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-/// A spec in a directory of its own.
+/// A project in a temporary directory.
 pub struct Project {
     root: TempDir,
 }
 
-/// What a run of the command said and how it ended.
+/// The output and exit status of a run.
 #[derive(Debug)]
 pub struct Run {
     pub status: i32,
@@ -24,8 +24,8 @@ pub struct Run {
 }
 
 impl Project {
-    /// The small spec that the documentation is tested with. Not the repository's own: that one is
-    /// its owner's, who may add to it what these tests add.
+    /// Creates a project with the small spec of the documentation tests. The repository's own spec would not do,
+    /// because its owner may add the same things as these tests.
     pub fn new() -> Self {
         let project = Self::empty();
         let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-codegen/tests/docs");
@@ -33,7 +33,7 @@ impl Project {
         project
     }
 
-    /// A directory with nothing in it.
+    /// Creates an empty project.
     pub fn empty() -> Self {
         Self {
             root: tempfile::tempdir().expect("a directory for the test"),
@@ -69,7 +69,7 @@ impl Project {
         Run::new(&output.expect("the command can be run"))
     }
 
-    /// Every file below a directory of the project, with its time of change.
+    /// Returns every file below a directory of the project, with its modification time.
     pub fn files(&self, directory: &str) -> Vec<(PathBuf, std::time::SystemTime)> {
         let mut files = Vec::new();
         visit(&self.path(directory), &mut files);
@@ -94,7 +94,7 @@ impl Run {
     }
 }
 
-/// The command, without what the environment says about colors, the repository and the language.
+/// Returns the command without environment variables for colors, the repository and the language.
 pub fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fcproto"));
     command.args(args);
@@ -113,7 +113,7 @@ pub fn command(args: &[&str]) -> Command {
     command
 }
 
-/// A `PATH` on which the command is found first.
+/// Returns a `PATH` that finds the command first.
 pub fn path_to_command() -> OsString {
     let directory = Path::new(env!("CARGO_BIN_EXE_fcproto"))
         .parent()

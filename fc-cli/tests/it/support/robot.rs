@@ -4,7 +4,7 @@ use super::{Project, Run, command};
 use std::io::{self, BufRead as _, BufReader};
 use std::process::{Child, ChildStdout, Command, Stdio};
 
-/// A program that listens as a robot on free ports. It ends when it is dropped.
+/// A program that listens as a robot on free ports. Dropping it ends the program.
 pub struct Robot {
     child: Child,
     stdout: BufReader<ChildStdout>,
@@ -52,13 +52,13 @@ impl Robot {
         }
     }
 
-    /// Runs `fcproto mock --as app` against it.
+    /// Runs `fcproto mock --as app` against this robot.
     pub fn app(&self, project: &Project, args: &[&str]) -> Run {
         let output = self.app_command(project, args).output();
         Run::new(&output.expect("the command can be run"))
     }
 
-    /// Returns `fcproto mock --as app` against it.
+    /// Returns the command `fcproto mock --as app` against this robot.
     pub fn app_command(&self, project: &Project, args: &[&str]) -> Command {
         let (_, data_port) = self.data.rsplit_once(':').expect("a port");
         let to = [
@@ -75,7 +75,7 @@ impl Robot {
         app
     }
 
-    /// Runs `fcproto call` against it.
+    /// Runs `fcproto call` against this robot.
     pub fn call(&self, project: &Project, args: &[&str]) -> Run {
         project.fc(&[&["call", "--to", &self.commands], args].concat())
     }
@@ -88,7 +88,7 @@ impl Robot {
         self.end()
     }
 
-    /// Waits for the end. The output lacks the first line.
+    /// Waits for the end. The returned output lacks the first line, which `start` has read.
     pub fn end(mut self) -> Run {
         let stdout = io::read_to_string(&mut self.stdout).expect("its output");
         let errors = self.child.stderr.take().expect("its errors");
@@ -107,7 +107,7 @@ impl Robot {
 
 impl Drop for Robot {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The program may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

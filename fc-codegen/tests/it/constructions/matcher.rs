@@ -22,7 +22,7 @@ pub struct Construction {
     pub say: String,
 }
 
-/// Phrases by their first word; each is the rest of its words.
+/// Phrases by their first word. Each value has the remaining words.
 pub type Phrases = HashMap<String, Vec<Vec<String>>>;
 
 pub struct Matcher {
@@ -37,7 +37,7 @@ pub fn rules() -> Rules {
     serde_yaml::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
-/// Every phrase of a pattern such as `of a|an|the`.
+/// Returns every phrase of a pattern such as `of a|an|the`.
 pub fn expand(patterns: &[Construction]) -> Phrases {
     let mut phrases = Phrases::new();
     for pattern in patterns {
@@ -70,7 +70,7 @@ impl Matcher {
         }
     }
 
-    /// The construction of a sentence, or its length.
+    /// Returns the construction of a sentence, or its length if it is too long.
     pub fn find(&self, sentence: &str) -> Option<String> {
         let words = words(sentence);
         let at_start = words.first().and_then(|_| phrase(&self.starts, &words));
@@ -85,7 +85,7 @@ impl Matcher {
         (length > self.longest).then(|| format!("{length} words"))
     }
 
-    /// The sentences of a text that count, each with its reason.
+    /// Returns the sentences that count, each with its reason.
     pub fn count(&self, blocks: &[String]) -> Vec<String> {
         let sentences = blocks.iter().flat_map(|block| sentences(block));
         let found = sentences.filter_map(|it| Some((self.find(&it)?, it)));
@@ -93,7 +93,7 @@ impl Matcher {
     }
 }
 
-/// The phrase with which some words start.
+/// Returns the phrase that these words start with.
 pub fn phrase(phrases: &Phrases, words: &[String]) -> Option<String> {
     let (first, rest) = words.split_first()?;
     let found = phrases.get(first)?.iter().find(|it| rest.starts_with(it))?;
@@ -107,12 +107,12 @@ pub fn words(sentence: &str) -> Vec<String> {
     words.map(str::to_lowercase).collect()
 }
 
-/// Chinese characters and punctuation, and the dot between badges, end a piece of English.
+/// Returns `true` for Chinese characters and punctuation and for the dot between badges. They end a piece of English.
 fn ends_piece(character: char) -> bool {
     matches!(character, '·' | '\u{2E80}'..='\u{9FFF}' | '\u{F900}'..='\u{FAFF}' | '\u{FF00}'..='\u{FFEF}' | '“' | '”')
 }
 
-/// The English sentences of a block, which is one paragraph. Code spans count as one word.
+/// Returns the English sentences of a block, which is one paragraph. A code span counts as one word.
 pub fn sentences(block: &str) -> Vec<String> {
     let mut text = String::new();
     for (index, part) in block.split('`').enumerate() {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// The paragraphs, items and cells of Markdown, without code and headings.
+/// Returns the paragraphs, items and cells of Markdown, without code and headings.
 pub fn prose(text: &str) -> Vec<String> {
     let mut blocks = vec![String::new()];
     let mut fence: Option<&str> = None;
@@ -39,7 +39,7 @@ pub fn prose(text: &str) -> Vec<String> {
     blocks
 }
 
-/// Text without links, tags and emphasis.
+/// Removes links, tags and emphasis.
 fn plain(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
@@ -56,12 +56,12 @@ fn plain(text: &str) -> String {
     out + rest
 }
 
-/// The end of a file's name behind its dot.
+/// Returns the part of a file's name after its dot.
 pub fn ending(path: &Path) -> Option<&str> {
     path.extension().and_then(|ending| ending.to_str())
 }
 
-/// The marks of comments in files with this ending. Scripts have none.
+/// Returns the comment marks for files with this ending. Scripts have no ending and use `#`.
 pub fn marks(ending: Option<&str>) -> Option<&'static [&'static str]> {
     match ending {
         Some("rs" | "cs") => Some(&["///", "//!", "//"]),
@@ -73,7 +73,7 @@ pub fn marks(ending: Option<&str>) -> Option<&'static [&'static str]> {
     }
 }
 
-/// The comments of a source file, a paragraph each.
+/// Returns the comments of a source file, one paragraph each.
 pub fn comments(path: &Path, text: &str) -> Vec<String> {
     let ending = ending(path);
     let Some(marks) = marks(ending) else {
@@ -106,7 +106,7 @@ pub fn comments(path: &Path, text: &str) -> Vec<String> {
     blocks
 }
 
-/// The string literals of a Rust file that are text: those with four words or more. Tests at the end do not count.
+/// Returns the string literals of a Rust file that have at least four words. Tests at the end of the file do not count.
 pub fn literals(text: &str) -> Vec<String> {
     let text = text.split("#[cfg(test)]").next().unwrap_or_default();
     let mut blocks = Vec::new();
@@ -129,10 +129,10 @@ pub fn literals(text: &str) -> Vec<String> {
     blocks
 }
 
-/// Quotes as characters.
+/// Character literals that contain a quote.
 const QUOTES: [&str; 2] = ["'\"'", "'\\\"'"];
 
-/// What a literal holds, and the text behind it. `before` is the text before its quote.
+/// Returns the content of a literal, and the source after it. `before` is the source before its quote.
 fn literal<'t>(before: &str, inside: &'t str) -> (&'t str, &'t str) {
     let mark = before.trim_end_matches('#');
     if mark.ends_with('r') {
@@ -149,7 +149,7 @@ fn literal<'t>(before: &str, inside: &'t str) -> (&'t str, &'t str) {
     (literal, behind.strip_prefix('"').unwrap_or_default())
 }
 
-/// A format without the names of its arguments, each of which counts as one word.
+/// Replaces each argument of a format string by one word.
 fn without_holes(format: &str) -> String {
     let mut parts = format.split('{');
     let mut out = parts.next().unwrap_or_default().to_owned();
@@ -160,14 +160,14 @@ fn without_holes(format: &str) -> String {
     out
 }
 
-/// Whether a literal is text for people and not code.
+/// Returns `true` if a literal is text for people and not code.
 fn is_text(literal: &str) -> bool {
     let is_word =
         |word: &&str| word.len() > 1 && word.bytes().all(|byte| byte.is_ascii_alphabetic());
     literal.split_whitespace().filter(is_word).count() >= 4
 }
 
-/// The names of the tests of a file, with spaces between their words.
+/// Returns the names of the tests in a file, with spaces between their words.
 pub fn test_names(path: &Path, text: &str) -> Vec<String> {
     let ending = ending(path);
     let mut names = Vec::new();

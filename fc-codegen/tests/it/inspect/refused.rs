@@ -1,17 +1,17 @@
-//! Dumps that are refused.
+//! Dumps that the reader refuses.
 
 use crate::good_spec;
 use fc_codegen::inspect;
 use fc_spec::model::{Dump, DumpError};
 use serde_json::json;
 
-/// Why a dump is refused; empty where it is not.
+/// Returns the error of a dump, or an empty string for a valid dump.
 fn refused(text: &str) -> String {
     let error = Dump::read(text).err();
     error.map_or_else(String::new, |error| error.to_string())
 }
 
-/// The item of a list of the dump with this name.
+/// Returns the item with this name in a list of the dump.
 fn named<'d>(dump: &'d mut serde_json::Value, list: &str, name: &str) -> &'d mut serde_json::Value {
     let items = dump[list].as_array_mut().expect("a list");
     let item = items.iter_mut().find(|item| item["name"] == name);
@@ -95,7 +95,7 @@ fn dump_with_a_row_of_another_type_is_refused() {
     );
 }
 
-/// A name that is written in one place only, and what is said of another in that place.
+/// Renames an entry at its declaration or at its use, so that the dump uses an unknown name.
 #[test]
 fn a_dump_with_an_unknown_name_is_refused() {
     let text = inspect::json(&good_spec::model());
@@ -131,7 +131,7 @@ fn a_dump_with_an_unknown_name_is_refused() {
     }
 }
 
-/// What is said of an operation, a type or a value, where there is no such thing.
+/// Adds names of operations, types and values that the dump does not declare.
 #[test]
 fn dump_with_an_unknown_name_is_refused() {
     let text = inspect::json(&good_spec::model());

@@ -1,8 +1,8 @@
-//! C++: declarations of the headers outside of `private`. The name of a function is its whole text, because of overloads.
+//! C++: declarations of the headers outside of `private`. The name of a function is its whole signature, because of
+//! overloads.
 //!
-//! - A robot implements the pure virtual functions.
-//! - The signature of a choice lists all types of its `std::variant`.
-//! - The members of a struct have an order, because aggregates are initialised by position.
+//! A robot implements the pure virtual functions. The signature of a choice lists all types of its `std::variant`. The
+//! members of a struct have an order, because aggregates are initialised by position.
 
 use super::Declared;
 use super::tree::{Node, Syntax, cut, parts, tree, word};
@@ -98,7 +98,7 @@ fn member(declared: &mut Declared, owner: &str, head: &str) -> Option<String> {
         return None;
     }
     let called = before.split('(').next()?.rsplit(' ').next()?;
-    // This defines a function that a class declares.
+    // The class already declares this function.
     if called.contains("::") {
         return None;
     }
@@ -143,7 +143,7 @@ fn members(declared: &mut Declared, owner: &str, is_class: bool, node: &Node) {
         };
         declaration(declared, &inner, &node);
     }
-    // Programs do not give the unknown keys, which are last, by position.
+    // `extra`, the last member, holds the unknown keys. Programs do not initialise it by position.
     order.retain(|name| name != "extra");
     if !is_class {
         declared.orders.insert(owner.to_owned(), order);

@@ -1,7 +1,7 @@
 //! Kotlin, also for Java: `public` declarations. The name of a function includes its parameters.
 //!
-//! - A robot implements the functions of `…Handlers` that have no body.
-//! - A message that is a variant of a choice is a case of each `when` on the choice.
+//! A robot implements the functions of `…Handlers` that have no body. Each `when` on a choice has a case for each
+//! message that is a variant of the choice.
 
 use super::Declared;
 use super::tree::{Node, Syntax, cut, parts, tree, word};

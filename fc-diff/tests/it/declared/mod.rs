@@ -1,7 +1,7 @@
 //! Public declarations of generated packages, read from the text of their files.
 //!
-//! Each language has its rules in its own file. The rules cover the output of the generator. A name has the module that a
-//! program writes. The signature is the part that a compiler checks against the program.
+//! Each language has its rules in its own file. The rules cover the output of the generator only. A name includes the
+//! module path that a program writes. The signature is the part that a compiler checks against the program.
 
 mod cpp;
 mod kotlin;
@@ -19,7 +19,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Declared {
     /// Names with their signatures. Many names have an empty signature.
     pub names: BTreeMap<String, String>,
-    /// Names that break programs when they are added: methods to implement, required fields, cases of an exhaustive match.
+    /// Names that break programs when they are added: methods to implement, required fields, cases of an exhaustive
+    /// match.
     pub demands: BTreeSet<String>,
     /// Members whose order matters, by their owner.
     pub orders: BTreeMap<String, Vec<String>>,
@@ -66,8 +67,8 @@ impl Declared {
         self.name(name, signature);
     }
 
-    /// Returns the names of Kotlin as compiled code has them. A primitive type that may be absent is another type there, and
-    /// `String?` is `String`.
+    /// Returns the names of Kotlin declarations as compiled code spells them. A nullable primitive is a different type
+    /// there, while `String?` is the same as `String`.
     pub fn compiled(&self) -> Self {
         let bare = |name: &String| {
             let mut bare = name.replace('?', "");
@@ -103,7 +104,7 @@ impl Declared {
             let now = new.names.get(name).filter(|now| *now != signature)?;
             Some(format!("{name} is {now} and not {signature}"))
         });
-        // A new type asks nothing of programs that do not know it.
+        // A new type demands nothing from programs that do not know it.
         let is_known = |name: &&String| {
             let owners = name.match_indices(['.', ':', '|']);
             owners

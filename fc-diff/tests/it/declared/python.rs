@@ -1,8 +1,7 @@
 //! Python, for type checkers: classes, functions, constants and fields. Names with a leading `_` are private.
 //!
-//! - A robot implements each `@abstractmethod`.
-//! - A message has a value for each field without a default.
-//! - `rt.U8` and the like are `int` for a type checker.
+//! A robot implements each `@abstractmethod`. A program passes a value for each field without a default. A type checker
+//! treats `rt.U8` and the like as `int`.
 
 use super::Declared;
 use super::tree::{cut, word};
@@ -96,7 +95,7 @@ fn value(declared: &mut Declared, owner: &str, line: &str, is_constant: bool) {
         .replace("rt.TimestampS", "int");
     let name = format!("{owner}.{name}");
     if ty == "TypeAlias" {
-        // The alternatives are names.
+        // The alternatives of a union are names.
         let given = given
             .trim_start_matches("Annotated[")
             .trim_start_matches('(');
@@ -112,7 +111,7 @@ fn value(declared: &mut Declared, owner: &str, line: &str, is_constant: bool) {
         return declared.name(name, of);
     }
     let is_field = !is_constant && !ty.starts_with("ClassVar[");
-    // The runtime makes the envelopes.
+    // Programs do not construct envelopes; the runtime does.
     let is_made = owner.ends_with("Envelope");
     let is_given = !given.is_empty() && !given.starts_with("field(repr");
     if is_field && !is_given && !is_made {
@@ -122,7 +121,7 @@ fn value(declared: &mut Declared, owner: &str, line: &str, is_constant: bool) {
     }
 }
 
-/// Returns logical lines with their indent, without comments, docstrings and the punctuation of literals.
+/// Returns the logical lines with their indent. Comments, docstrings and the punctuation in literals are removed.
 fn lines(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     let (mut line, mut indent, mut depth, mut is_start) = (String::new(), 0, 0_usize, true);

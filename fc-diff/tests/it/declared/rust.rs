@@ -1,13 +1,14 @@
 //! Rust: `pub` items and fields, variants, and methods of traits.
 //!
-//! The derives add names that the text does not have:
+//! The derives add names that the source does not have:
 //!
-//! - `New` adds `new` and a `with_…` for each optional field. Two or more required fields also have a `…Fields` type.
+//! - `New` adds `new`, and a `with_…` for each optional field.
+//! - `New` also adds a `…Fields` type for two or more required fields.
 //! - `#[fc(default = …)]` on a field adds `…_or_default` and `DEFAULT_…`.
 //! - `final`, `error` and `order` of an enum add methods and `State`.
 //! - `sets_off` and `accepted_in` of a request implement traits.
 //!
-//! The root re-exports the items of `client`, `protocol` and `robot`, which are private modules.
+//! The root re-exports the items of the private modules `client`, `protocol` and `robot`.
 
 use super::Declared;
 use super::tree::{Node, Syntax, cut, parts, tree, word};
@@ -108,7 +109,7 @@ fn item(declared: &mut Declared, module: &str, node: &Node) {
     }
 }
 
-/// A function or a constant, without its value.
+/// Adds a function, or a constant without its value.
 fn function(declared: &mut Declared, owner: &str, head: &str) {
     let (head, _) = cut(head, " = ");
     let name = match cut(head, "fn ") {

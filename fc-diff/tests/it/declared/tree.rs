@@ -1,8 +1,10 @@
-//! Parses generated sources with braces into nested declarations. It covers the output of the generator, not all of a language.
+//! Parses generated sources with braces into nested declarations. It covers the output of the generator, not the whole
+//! language.
 
 /// A declaration and its members.
 pub struct Node {
-    /// The text before the braces, on one line, without comments. Literals keep their quotes and lose their punctuation.
+    /// The text before the braces, on one line and without comments. Literals keep their quotes and lose their
+    /// punctuation.
     pub head: String,
     /// The declarations in the braces; `None` without braces.
     pub body: Option<Vec<Node>>,
@@ -21,7 +23,7 @@ pub struct Syntax {
     pub ends_at_line: bool,
     /// Tells if commas end the declarations in the braces after this head.
     pub is_list: fn(&str) -> bool,
-    /// `'` quotes strings, and `/` regular expressions.
+    /// `'` quotes strings, and `/` encloses regular expressions.
     pub is_script: bool,
 }
 
@@ -35,7 +37,7 @@ pub fn tree(text: &str, syntax: &Syntax) -> Vec<Node> {
     reader.block(false)
 }
 
-/// Removes comments, and the punctuation in literals.
+/// Removes comments and the punctuation inside literals.
 fn plain(text: &str, syntax: &Syntax) -> String {
     let chars: Vec<char> = text.chars().collect();
     let starts = |at: usize, what: &str| {
@@ -164,7 +166,7 @@ fn push(nodes: &mut Vec<Node>, head: &mut String, body: Option<Vec<Node>>) {
     head.clear();
 }
 
-/// Splits a text at the first `end` outside of all brackets.
+/// Splits a string at the first `end` outside of all brackets.
 pub fn cut<'t>(text: &'t str, end: &str) -> (&'t str, &'t str) {
     let mut depth = 0_usize;
     for (at, c) in text.char_indices() {
@@ -195,7 +197,7 @@ pub fn parts(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns the first word of a text.
+/// Returns the first word of a string.
 pub fn word(text: &str) -> &str {
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '#' || c == '$';
     text.split(|c| !is_part(c)).next().unwrap_or_default()

@@ -1,8 +1,7 @@
 //! TypeScript: names that the root exports. Operations, schemas, tables and defaults are in modules.
 //!
-//! - A robot implements the methods of `…Robot`.
-//! - A literal of a message has the required members.
-//! - The alternatives of a union type are names, and cases of a `switch`. Open enums have no such alternatives.
+//! A robot implements the methods of `…Robot`. A literal of a message has the required members. The alternatives of a
+//! union type are names, and cases of a `switch`. Open enums have no such alternatives.
 
 use super::Declared;
 use super::tree::{Node, Syntax, cut, tree, word};
@@ -55,7 +54,7 @@ pub fn read(declared: &mut Declared, path: &str, text: &str) {
 }
 
 fn interface(declared: &mut Declared, name: &str, node: &Node) {
-    // A class may have the same name.
+    // A class may have the same name, so an existing entry remains.
     declared.names.entry(name.to_owned()).or_default();
     let members = node.children();
     let is_message = members.iter().any(|it| it.head.starts_with("extra?:"));
@@ -82,7 +81,7 @@ fn interface(declared: &mut Declared, name: &str, node: &Node) {
 fn alternatives(declared: &mut Declared, name: &str, rest: &str) {
     declared.names.entry(name.to_owned()).or_default();
     let (_, mut of) = cut(rest, "=");
-    // An open enum takes any value.
+    // An open enum accepts any value.
     if of.contains("& {}") {
         return;
     }

@@ -1,4 +1,4 @@
-//! What several tests need.
+//! Helpers that several tests share.
 
 pub mod specs;
 pub mod typed;
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;
 
-/// The committed vectors: each file by its name.
+/// Returns the committed vectors with the names of their files.
 pub fn vectors() -> Vec<(String, Value)> {
     let folder = specs::root().join("fc-generated/vectors");
     let mut files: Vec<_> = fs::read_dir(folder)
@@ -24,7 +24,7 @@ pub fn vectors() -> Vec<(String, Value)> {
     files.into_iter().map(read).collect()
 }
 
-/// A list of cases.
+/// Returns a list of cases.
 pub fn cases<'v>(file: &'v Value, list: &str) -> &'v [Value] {
     file[list].as_array().unwrap()
 }
@@ -39,7 +39,7 @@ pub fn unhex(text: &str) -> Vec<u8> {
     (0..text.len()).step_by(2).map(digit).collect()
 }
 
-/// What the environment says under this name.
+/// Returns the number in an environment variable, or `otherwise`.
 pub fn number(name: &str, otherwise: u64) -> u64 {
     let given = std::env::var(name).ok();
     given.map_or(otherwise, |text| text.parse().expect("a number"))

@@ -1,4 +1,4 @@
-//! Models: that of the project and that of a small protocol of the tests' own.
+//! Models of the project's spec, of the small protocol of these tests and of other protocols.
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
@@ -8,18 +8,18 @@ use fc_spec::syntax::read_dir;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The project's root.
+/// Returns the project's root.
 pub fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap().to_owned()
 }
 
-/// The model of the project's own spec, to which the committed vectors belong.
+/// Returns the model of the project's own spec, to which the committed vectors belong.
 pub fn model() -> Model {
     model_below(&root())
 }
 
-/// The model of the spec below `root`.
+/// Returns the model of the spec in `root`.
 pub fn model_below(root: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root, Path::new("spec"), &mut faults);
@@ -29,12 +29,12 @@ pub fn model_below(root: &Path) -> Model {
 /// The header and envelope of the small protocol.
 pub const SMALL: &str = include_str!("../../small/protocol.yaml");
 
-/// The small protocol.
+/// Returns the model of the small protocol.
 pub fn small() -> Model {
     model_of(SMALL, include_str!("../../small/commands/lamp.yaml"))
 }
 
-/// Protocols that have little in common with that of the project.
+/// Returns the models of protocols that have little in common with the project's spec.
 pub fn others() -> [Model; 5] {
     let good = |file| fs::read_to_string(root().join("fc-spec/tests/good").join(file)).unwrap();
     let good = model_of(&good("protocol.yaml"), &good("commands/demo.yaml"));
@@ -42,7 +42,7 @@ pub fn others() -> [Model; 5] {
     [small(), good, below("odd"), below("meter"), below("beacon")]
 }
 
-/// The model of a protocol with one group.
+/// Returns the model of a protocol with one group.
 pub fn model_of(protocol: &str, commands: &str) -> Model {
     let files = [
         ("spec/protocol.yaml", protocol),

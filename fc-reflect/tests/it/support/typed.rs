@@ -1,4 +1,4 @@
-//! The generated package, asked for what it makes of a frame.
+//! Decodes frames with the generated package.
 
 use super::hex;
 use fc_generated::{Fc, for_each_message};
@@ -10,13 +10,13 @@ use fc_spec::model::{Body, Direction, Kind, Model};
 use std::collections::HashMap;
 use std::fmt;
 
-/// What becomes of a frame.
+/// The result of decoding a frame.
 #[derive(Clone, PartialEq)]
 pub enum Verdict {
-    /// It is refused, with the error's name, the path and the place in the body.
+    /// The frame is refused: the name of the error, the path and the offset in the body.
     Refused(&'static str, String, usize),
-    /// It is taken: what the header says of it, and its data. That of a message of an operation is as it is written
-    /// again.
+    /// The frame is accepted: the content of its header, and its data. The message of a known operation is decoded and
+    /// encoded again.
     Taken {
         response: bool,
         kind: u8,
@@ -57,7 +57,7 @@ impl fmt::Debug for Verdict {
 
 type Transcode = fn(&[u8], Allowance) -> Result<Vec<u8>, BodyError>;
 
-/// The operations of the generated package.
+/// Transcoders for the messages of the generated package, by kind, code and direction.
 pub struct Typed {
     bodies: HashMap<(u8, u16, bool), Transcode>,
 }
@@ -84,13 +84,13 @@ fn enveloped<E: Message, B: Message>(
     Ok(out)
 }
 
-/// As a frame of a stream has it.
+/// Transcodes a message without an envelope, as in a stream.
 fn alone<B: Message>(text: &[u8], allowance: Allowance) -> Result<Vec<u8>, BodyError> {
     Ok(json::to_vec(&json::decode::<B>(text, allowance)?))
 }
 
 impl Typed {
-    /// The types by the codes that the model gives them.
+    /// Assigns the types of the package to the codes of the model.
     pub fn new(model: &Model) -> Self {
         let mut bodies = HashMap::new();
         for operation in &model.operations {
@@ -117,7 +117,7 @@ impl Typed {
         Self { bodies }
     }
 
-    /// What the typed runtime makes of the frame that `bytes` begin with, if its body may cost so much.
+    /// Returns the verdict of the typed runtime on the first frame of `bytes`. `allowance` limits the cost of its body.
     pub fn verdict(&self, bytes: &[u8], allowance: Allowance) -> Verdict {
         let mut decoder = Decoder::<Fc>::new();
         decoder.push(bytes);
@@ -135,9 +135,9 @@ impl Typed {
         let known = self.bodies.get(&(kind, code, response));
         let body = match known {
             Some(transcode) => transcode(&data, allowance),
-            // Bytes of which no more is known.
+            // The content of an unknown stream is opaque.
             None if kind == Fc::STREAM => Ok(data),
-            // Without a type there is nothing to write again.
+            // Without a type, only the envelope is read, and the data stays unchanged.
             None if response => {
                 enveloped::<<Fc as Protocol>::Response, Empty>(&data, allowance).map(|_| data)
             }
