@@ -1,5 +1,5 @@
-//! A file of a hundred megabytes is refused without being read. Alone in its file, because it looks at
-//! the memory of the whole process.
+//! A file of a hundred megabytes is refused without being read. The test is a separate program, because it measures the
+//! memory of the whole process.
 
 #![allow(clippy::expect_used, clippy::indexing_slicing, reason = "tests")]
 
@@ -9,7 +9,7 @@ mod syntax_support;
 
 use std::fs::File;
 
-/// Most memory that this process has held so far, in KiB, where the system tells.
+/// Returns the peak memory of this process so far in KiB, if the system reports it.
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
@@ -24,7 +24,7 @@ fn hundred_megabytes() {
     let spec = root.path().join("spec");
     std::fs::create_dir(&spec).expect("the spec's directory");
     let file = File::create(spec.join("huge.yaml")).expect("a file");
-    // A file of zeros that takes no room on the disk.
+    // A sparse file of zeros, which takes no space on the disk.
     file.set_len(100 << 20).expect("its length");
     std::fs::write(spec.join("small.yaml"), "a: 1\na: 2\n").expect("a file");
 

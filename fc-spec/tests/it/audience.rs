@@ -1,4 +1,4 @@
-//! What one audience has of a spec.
+//! Tests `Model::for_audience`: the model of one audience has only its part of the spec, and no dangling names.
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
@@ -8,7 +8,7 @@ use fc_spec::model::{
 use fc_spec::source::Sources;
 use std::path::Path;
 
-/// Beside the good spec: everything that can be for an audience, and everything that can name it.
+/// A group for the good spec. It limits items of every kind to an audience, and names such items in every way.
 const MORE: &str = r#"
 group: { id: more, zh: 更多, en: More }
 commands:
@@ -113,7 +113,7 @@ fn model() -> Model {
             .join("tests/good")
             .join(path);
         let text = std::fs::read_to_string(place).expect("good");
-        // There is one list of stores in a spec.
+        // A spec has only one list of stores, so `MORE` cannot add one.
         let stores = "\nstores:\n  lab: { zh: 实验室, en: Laboratory }\n";
         (format!("spec/{path}"), text.replace("\nstores:\n", stores))
     });
@@ -165,7 +165,7 @@ fn projection_removes_other_parts_and_their_types() {
     ] {
         assert!(model.types.named(gone).is_none(), "{gone}");
     }
-    // Also a field that is there only under a value that others have.
+    // `why` is gone too: it is sent only with a value of the other audience.
     let body = [
         "job", "mood", "sane", "plain", "moods", "tone", "whole", "way",
     ];
@@ -254,7 +254,7 @@ fn projection_leaves_no_dangling_name() {
     let row =
         |mood: i128| Value::Object(vec![("mood".to_owned(), Value::Number(Number::Int(mood)))]);
     assert_eq!(rows, Some(vec![row(1), row(3)]));
-    // What only the others' operation has asked is no gap of this part.
+    // C900 is gone, because only an operation of the other audience asks it.
     let conflicts: Vec<&str> = model.conflicts.iter().map(|it| it.id.as_str()).collect();
     assert_eq!(conflicts, ["C001", "C901"]);
     assert!(
@@ -267,7 +267,7 @@ fn projection_leaves_no_dangling_name() {
     assert_eq!(json(&read), json(&model));
 }
 
-/// A code that others use is not free.
+/// A code that the other audience uses is not free.
 #[test]
 fn codes_of_others_stay_taken() {
     let whole = model();

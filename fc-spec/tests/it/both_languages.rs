@@ -1,14 +1,14 @@
-//! What holds of every sentence that is said of a fault.
+//! Checks for every text of an error.
 
 use fc_spec::diagnostic::{Diagnostic, Faults};
 use fc_spec::model::Text;
 use regex_lite::Regex;
 
-/// Sentences that pass on what a library says, which has no Chinese: the parser of YAML, the regular expressions, the
+/// Beginnings of messages that quote the English text of the YAML parser, the regular expression library or the
 /// operating system.
 const PASSED_ON: [&str; 3] = ["不是 YAML：", "正则表达式库的说明：", "无法读取 `"];
 
-/// What is wrong with what these faults say: all of it has to be in both languages, and of the same names.
+/// Returns an objection for each text that is missing in one language, or that names different things in the two.
 pub fn objections(whose: &str, faults: &Faults) -> Vec<String> {
     faults
         .iter()
@@ -17,7 +17,7 @@ pub fn objections(whose: &str, faults: &Faults) -> Vec<String> {
         .collect()
 }
 
-/// Every sentence of a fault.
+/// Returns all texts of an error.
 fn said(fault: &Diagnostic) -> impl Iterator<Item = &Text> {
     let labels = std::iter::once(&fault.primary).chain(&fault.secondary);
     let labels = labels.map(|label| &label.text);
@@ -27,7 +27,7 @@ fn said(fault: &Diagnostic) -> impl Iterator<Item = &Text> {
         .chain(fault.fixes.iter().map(|fix| &fix.message))
 }
 
-/// What is wrong with a sentence.
+/// Returns the objection to a text, if there is one.
 fn objection(text: &Text) -> Option<&'static str> {
     let [(zh_names, zh), (en_names, en)] = [&text.zh, &text.en].map(|text| parts(text));
     let is = |pattern: &str, text: &str| Regex::new(pattern).is_ok_and(|it| it.is_match(text));
@@ -49,7 +49,7 @@ fn objection(text: &Text) -> Option<&'static str> {
     }
 }
 
-/// What stands between backticks, sorted, and the sentence with something short in its place.
+/// Returns the names between backticks, sorted, and the sentence with `x` in their place.
 fn parts(text: &str) -> (Vec<&str>, String) {
     let mut names: Vec<_> = text.split('`').skip(1).step_by(2).collect();
     names.sort_unstable();

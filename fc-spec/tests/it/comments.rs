@@ -1,4 +1,4 @@
-//! Comments stay in the tree, each with what it is about.
+//! The tree keeps all comments, each with the node that it describes.
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::source::{FileId, Span};

@@ -1,4 +1,4 @@
-//! At which keys of the language the faults of a spec lie, and whether the keys say so.
+//! Compares the keys at which errors lie with the errors that the language reference declares for each key.
 
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults};
 use fc_spec::index::{Occurrence, Role, visit};
@@ -7,24 +7,25 @@ use fc_spec::source::Sources;
 use fc_spec::syntax::parse;
 use std::collections::BTreeSet;
 
-/// Keys under which a body stands, which are checked alike wherever it is.
+/// Keys that hold a body. The checks of a body are the same under each of them.
 const BODIES: [&str; 5] = ["request", "response", "body", "fields", "items"];
 
-/// A part of the language, one of its keys, and a fault that lies there.
+/// Errors that were found: the part of the language, its key, and the code.
 pub type Raised = BTreeSet<(&'static str, &'static str, FaultCode)>;
 
-/// Whether it is one of YAML itself, which may lie anywhere, or of an item as a whole, of whose list no site tells.
+/// Returns `true` for errors without a key. Errors of YAML may lie anywhere. `SplitItem` is about a whole item, whose
+/// place does not name the list.
 fn has_no_key(code: FaultCode) -> bool {
     code.as_str().starts_with("FC00") || code == FaultCode::SplitItem
 }
 
-/// Whether it is one of the shape, which follows from the kind of a key.
+/// Returns `true` for errors of the shape, which follow from the kind of a key.
 fn is_of_shape(code: FaultCode) -> bool {
     code.as_str().starts_with("FC01")
 }
 
-/// The part and the key under which a fault lies. Of a whole mapping it is the key under which that stands; of a key that
-/// the part does not have there is none.
+/// Returns the part and the key at which an error lies. For a whole mapping, this is the key above it. The key is
+/// `None` if the part does not have it.
 fn place(sources: &Sources, fault: &Diagnostic) -> Option<(&'static str, Option<&'static str>)> {
     let span = fault.primary.span;
     let (id, file) = sources.iter().find(|(id, _)| *id == span.file)?;
@@ -41,7 +42,8 @@ fn place(sources: &Sources, fault: &Diagnostic) -> Option<(&'static str, Option<
     Some(found)
 }
 
-/// Adds where the faults of a spec lie; gives those of which the reference of the language does not say that they may.
+/// Adds the place of each error to `raised`. Returns the errors that the language reference does not declare at their
+/// place.
 pub fn undeclared(
     what: &str,
     sources: &Sources,
@@ -83,8 +85,8 @@ pub fn undeclared(
     missing
 }
 
-/// Faults that a key is said to raise and that nothing of what has been read has raised at a key of that name, those
-/// excepted of which it is known.
+/// Returns the errors that are declared for a key but not in `raised`, except those in `known`. Entries of `known` that
+/// are not needed are errors too. Keys of the same name count as one.
 pub fn unraised(raised: &Raised, known: &[(&str, &str)]) -> Vec<String> {
     let kin = |name: &'static str| if BODIES.contains(&name) { "body" } else { name };
     let raised: BTreeSet<_> = raised
@@ -106,7 +108,7 @@ pub fn unraised(raised: &Raised, known: &[(&str, &str)]) -> Vec<String> {
         .filter(|(key, code)| !is_known(key, *code))
         .map(|(key, code)| format!("nothing raises {code} at `{key}`"))
         .collect();
-    // What is an exception no longer goes.
+    // An exception that is not needed must be removed.
     let is_idle = |(key, code): &&(&str, &str)| {
         let pair = |(name, it): &(&str, FaultCode)| name == key && it.as_str() == *code;
         raised.iter().any(pair) || !declared.iter().any(pair)

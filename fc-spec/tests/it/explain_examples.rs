@@ -1,8 +1,8 @@
-//! The examples of `fcproto explain`: the bad one raises its code, the good one in the same place does not.
+//! The examples of `fcproto explain`: the bad one raises its code, and the good one in the same place does not.
 //!
-//! An example shows a few lines, as a reader meets them: fields, keys of a command, a section. The test
-//! puts them into a small sound spec (`good/`) wherever lines of that kind can stand, and asks for one
-//! place in which bad and good differ by the code. Codes of the syntax are parsed by `syntax_explain`.
+//! An example shows a few lines without their surroundings: fields, keys of a command, or a section. The test inserts
+//! them at every place of a small valid spec (`good/`) that can hold such lines. In at least one place, the bad example
+//! must have the code and the good one must not. `syntax_explain` parses the examples of syntax codes.
 
 use fc_spec::diagnostic::{FaultCode, Faults};
 use fc_spec::load::load;
@@ -11,14 +11,14 @@ use fc_spec::source::Sources;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Codes whose examples need more around them than lines have that stand in one place: several places at
-/// once, the whole of a frame, or a table of result codes. The fixtures in `bad/` show these.
+/// Codes whose examples need more context than one place gives: the whole frame, a table of result codes, or several
+/// places at once. The fixtures in `bad/` cover these codes.
 const SPREAD: [&str; 10] = [
     "FC0217", "FC0218", "FC0302", "FC0501", "FC0502", "FC0510", "FC0514", "FC0516", "FC0610",
     "FC0611",
 ];
 
-/// A key that stands at the margin of some text, and all of its lines.
+/// Returns each key at the left margin of a text, with all of its lines.
 fn entries(text: &str) -> Vec<(String, String)> {
     let mut entries: Vec<(String, String)> = Vec::new();
     for line in text
@@ -44,8 +44,8 @@ fn indented(text: &str, depth: usize) -> String {
     text.lines().map(|line| format!("{pad}{line}\n")).collect()
 }
 
-/// `text` with an example in the place that a path of keys leads to: an entry of the same key, or with the
-/// same role, makes way. `None` where there is no such place.
+/// Returns `text` with an example at the end of the mapping or list at `path`. Entries with the same key are replaced.
+/// Returns `None` if there is no such place.
 fn put(text: &str, path: &[&str], example: &str) -> Option<String> {
     let all = entries(text);
     let Some((first, rest)) = path.split_first() else {
@@ -84,7 +84,7 @@ fn put(text: &str, path: &[&str], example: &str) -> Option<String> {
             out.push_str(&lines);
             continue;
         };
-        // `key: { a: 1 }` on one line makes way as a whole.
+        // A mapping on one line, `key: { a: 1 }`, cannot take the lines of an example.
         let (head, body) = match head.split_once(": {") {
             Some(_) => return None,
             None => (head, body),
@@ -101,7 +101,7 @@ fn put(text: &str, path: &[&str], example: &str) -> Option<String> {
     Some(out)
 }
 
-/// What of these keys the example does not say itself.
+/// Returns a line for each of `keys` that the example does not have.
 fn lacking(example: &str, keys: &[(&str, &str)]) -> String {
     let said = entries(example);
     let lacks = |key: &str| !said.iter().any(|(other, _)| other == key);
@@ -134,7 +134,7 @@ const FIELD: &[(&str, &str)] = &[
 const TEXTS: &[(&str, &str)] = &[("zh", "类型"), ("en", "A type")];
 const GROUP: &str = "group: { id: examples, zh: 例子, en: Examples }\n";
 
-/// Commands as an example abridges them, with the keys that it leaves out.
+/// Returns the commands of an example, with the required keys that it leaves out.
 fn as_commands(example: &str) -> String {
     let mut commands = String::new();
     for (key, lines) in entries(example) {
@@ -159,7 +159,7 @@ fn as_commands(example: &str) -> String {
     commands
 }
 
-/// Places in a sound spec that lines of an example may have, as further files.
+/// Returns additional files for the good spec, each with the example in another kind of place.
 fn files(example: &str) -> Vec<(String, String)> {
     let whole = |inner: &str, section: &str| format!("{section}:\n{}", indented(inner, 2));
     let command = |keys: &str| {
@@ -208,7 +208,7 @@ fn files(example: &str) -> Vec<(String, String)> {
     ]
 }
 
-/// Places of the good spec's own `protocol.yaml` that an example may take.
+/// Places in the good spec's `protocol.yaml` that may hold an example.
 const PLACES: &[&[&str]] = &[
     &[],
     &["transport"],
@@ -230,7 +230,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(path).expect("the good spec")
 }
 
-/// What examples take for granted, by the names they use.
+/// Declares the names that examples use without declaring them.
 const BACKGROUND: &str = "group: { id: known, zh: 已知, en: Known }
 commands:
   get_station:
@@ -255,7 +255,7 @@ types:
   CellType: { enum: u8, zh: 大小, en: Size, values: { 1: { name: small, zh: 小, en: Small } } }
 ";
 
-/// The good spec, as it is or with what examples take for granted.
+/// Returns the files of the good spec. If `known`, they also declare the names that examples use.
 fn base(known: bool) -> Vec<(String, String)> {
     let [mut protocol, mut demo] = ["protocol.yaml", "commands/demo.yaml"].map(read);
     let mut files = Vec::new();
@@ -288,12 +288,13 @@ fn codes(files: Vec<(String, String)>) -> BTreeSet<String> {
     codes.collect()
 }
 
-/// The good spec with an example in each of the places, in their order; nothing where it cannot stand.
+/// Returns the good spec with the example in each of the places, in a fixed order. A place that cannot hold the example
+/// gives an empty spec.
 fn specs(blocks: &[String]) -> Vec<Vec<(String, String)>> {
     let mut all = Vec::new();
     let example = blocks.concat();
     for known in [false, true] {
-        // Several blocks are as many files; what stands once in a spec makes way.
+        // Each block becomes a file. Its sections replace those that a spec can have only once.
         let mut together = base(known);
         let said: Vec<String> = entries(&example).into_iter().map(|(key, _)| key).collect();
         for (_, text) in &mut together {
@@ -338,7 +339,7 @@ fn specs(blocks: &[String]) -> Vec<Vec<(String, String)>> {
     all
 }
 
-/// The blocks of an explanation behind fences of one kind.
+/// Returns the fenced blocks of one kind from an explanation.
 fn blocks(text: &str, kind: &str) -> Vec<String> {
     let open = format!("```yaml {kind}\n");
     let parts = text.split(&open).skip(1);
@@ -380,7 +381,7 @@ fn every_example_is_yaml() {
     {
         for kind in ["bad", "good"] {
             for text in blocks(code.explain(Lang::En), kind) {
-                // As a section of a file, which the syntax does not look into.
+                // A file is a mapping, so a list becomes the value of a key.
                 let text = if text.starts_with('-') {
                     format!("items:\n{text}")
                 } else {

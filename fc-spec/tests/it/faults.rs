@@ -1,15 +1,15 @@
-//! Every fault has a fixture: a file of `bad/` laid over the small good spec of `good/`.
+//! Every error code has a fixture: a file in `bad/` that is added to the small valid spec in `good/`.
 //!
-//! A fixture says in comments at its top what must be found, all of it and nothing else:
+//! Comments at the top of a fixture list exactly the errors that it causes.
 //!
-//! - `# expect: FC0203 at 12:30`: this code at this line and column of the fixture;
-//!   `FC0203 at good/protocol.yaml 1:1` in another file
-//! - `# also: 5:3`: a secondary place, of the fault expected above it
-//! - `# fix: "quoted"`: replacement text of its first fix. Applying it must mend the fault
-//! - `# without: limits`: a section that is taken out of the good spec
+//! - `# expect: FC0203 at 12:30`: this code at this line and column of the fixture. `FC0203 at good/protocol.yaml 1:1`
+//!   is an error in another file.
+//! - `# also: 5:3`: a secondary place of the error above.
+//! - `# fix: "quoted"`: the replacement text of the first fix. Applying it must remove the error.
+//! - `# without: limits`: a section to remove from the good spec.
 //!
-//! A fixture with a group or operations lies in `commands/`, unless it says `# outside`. A section that stands only
-//! once in a spec takes the place of the good spec's own, unless the fixture says `# keep`.
+//! A fixture with a group or operations goes to `commands/`, unless it has `# outside`. A section that a spec has only
+//! once replaces that of the good spec, unless the fixture has `# keep`.
 
 use crate::both_languages;
 use crate::declared_faults;
@@ -21,7 +21,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// Sections that a fixture replaces.
+/// Sections that a spec has only once. A fixture replaces them.
 const ONCE: &[&str] = &[
     "protocol",
     "transport",
@@ -49,7 +49,7 @@ struct Fixture {
     text: String,
 }
 
-/// A fault as a fixture writes it.
+/// An error in the notation of the fixtures.
 #[derive(Debug, PartialEq, Eq)]
 struct Found {
     fault: String,
@@ -113,11 +113,11 @@ impl Fixture {
             .iter()
             .any(|section| has_section(&self.text, section));
         let folder = if grouped && !outside { "commands/" } else { "" };
-        // Behind the good spec, so that what is said twice is said again here.
+        // The name sorts after the good spec, so a duplicate is reported in the fixture.
         format!("spec/{folder}z_{}", self.name)
     }
 
-    /// The good spec with `text` laid over it.
+    /// Returns the good spec with `text` as an additional file, which replaces sections of it.
     fn sources(&self, text: &str) -> Sources {
         let keep = self.text.lines().any(|line| line == "# keep");
         let without: BTreeSet<&str> = self.directives("without: ").collect();
@@ -171,7 +171,7 @@ fn has_section(text: &str, section: &str) -> bool {
     })
 }
 
-/// Takes out top-level sections; the lines of the others keep their numbers.
+/// Blanks top-level sections. The lines of the other sections keep their numbers.
 fn drop_sections(text: &str, dropped: impl Fn(&str) -> bool) -> String {
     let mut out = String::new();
     let mut dropping = false;
@@ -232,7 +232,7 @@ fn each_error_is_in_both_languages() {
     assert!(objections.is_empty(), "{}", objections.join("\n"));
 }
 
-/// Of several fixes the first is the likeliest. A fix of a declaration may leave its uses to be mended.
+/// The first of several fixes is the likeliest. A fix at a declaration may leave errors at its uses.
 #[test]
 fn the_first_fix_mends_its_fault() {
     for fixture in fixtures() {
@@ -258,7 +258,7 @@ fn the_first_fix_mends_its_fault() {
     }
 }
 
-/// Codes of the syntax are exercised by the examples of their explanations, which the tests of the syntax parse.
+/// Syntax codes need no fixture: `syntax_explain` parses the examples of their explanations.
 #[test]
 fn every_code_has_a_fixture() {
     let expected: BTreeSet<String> = fixtures()
@@ -274,7 +274,7 @@ fn every_code_has_a_fixture() {
     assert!(missing.is_empty(), "no fixture expects {missing:?}");
 }
 
-/// A fixture is named after the first code that it expects, so that one finds it.
+/// A fixture is named after a code that it expects, so that it is easy to find.
 #[test]
 fn fixtures_are_named_after_their_code() {
     for fixture in fixtures() {
@@ -288,36 +288,35 @@ fn fixtures_are_named_after_their_code() {
     }
 }
 
-/// Keys that are said to raise a fault of which there is no fixture, since a key beside them is looked at by the same
-/// check and has one.
+/// Keys that declare an error but have no fixture for it. The same check covers another key, which has one.
 const SAID_ALONE: [(&str, &str); 16] = [
-    // A slip raises it.
+    // A slip covers it.
     ("errors", "FC0218"),
-    // A type stands behind a wire key as it does under `type`.
+    // The value of a wire key is a type, as under `type`.
     ("body", "FC0205"),
-    // As at `max`.
+    // Covered at `max`.
     ("min", "FC0408"),
-    // As in `sets_off`, by its name alone.
+    // Covered in `sets_off`, with the name alone.
     ("report", "FC0211"),
     ("report", "FC0221"),
-    // Operations of all kinds have one set of names.
+    // Operations of all kinds share one set of names.
     ("reports", "FC0202"),
     ("reports", "FC0209"),
     ("streams", "FC0201"),
     ("streams", "FC0202"),
     ("streams", "FC0209"),
-    // As in `when`.
+    // Covered in `when`.
     ("unless", "FC0433"),
     ("unless", "FC0436"),
-    // As of a code that is stated.
+    // Covered by codes that are written without `value`.
     ("value", "FC0302"),
     ("value", "FC0303"),
     ("value", "FC0304"),
-    // As at the other keys of a cadence.
+    // Covered at the other keys of a cadence.
     ("within_ms", "FC0448"),
 ];
 
-/// What the reference of the language says of faults is what there is.
+/// Each error lies at a key that declares it in the language reference, and each declared error occurs.
 #[test]
 fn errors_lie_at_the_keys_that_declare_them() {
     let mut raised = declared_faults::Raised::new();

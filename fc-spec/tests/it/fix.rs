@@ -1,4 +1,5 @@
-//! Fixes that are certain: over every slip of `slips` and every fixture of `bad` they add no fault and change no other line.
+//! Applies the certain fixes to every slip in `slips` and every fixture in `bad`. They reduce the errors and change
+//! only their own lines.
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::fix::{Fixed, certain, fix_all};
@@ -28,7 +29,7 @@ fn sources(protocol: &str, commands: &str) -> Sources {
     ])
 }
 
-/// Every slip, as files.
+/// Returns every slip with its title.
 fn slips() -> Vec<(String, Sources)> {
     let mut all = Vec::new();
     for entry in std::fs::read_dir(tests().join("slips")).expect("slips") {
@@ -61,7 +62,7 @@ fn slips() -> Vec<(String, Sources)> {
     all
 }
 
-/// Every fixture, beside the good spec: what is said twice then is a fault, too, and stays one.
+/// Returns every fixture next to the complete good spec. Duplicates cause more errors, which no fix removes.
 fn fixtures() -> Vec<(String, Sources)> {
     let mut all = Vec::new();
     for entry in std::fs::read_dir(tests().join("bad")).expect("fixtures") {
@@ -122,7 +123,7 @@ fn certain_fixes_change_only_their_lines() {
         assert_eq!(lines_that_changed(&sources, &after), named, "{title}");
     }
     println!("{fixed} of {with_certain} with a certain fix have fewer faults");
-    // Those that are left alone have something behind them that is not certain.
+    // In the rest, the certain fix uncovers errors without one.
     assert!(fixed > 60, "{fixed} of {with_certain}");
     assert!(fixed * 10 >= with_certain * 9, "{fixed} of {with_certain}");
 }
@@ -142,7 +143,7 @@ fn errors_behind_a_yaml_error_are_fixed_too() {
     );
 }
 
-/// What may be meant in two ways is left to a person.
+/// A value with two possible meanings is left to a person.
 #[test]
 fn guesses_are_left_alone() {
     for (old, new) in [

@@ -1,4 +1,4 @@
-//! The layout of files by examples, and what stays as it is.
+//! Tests the layout of files with the examples in `format/layout.txt` and with all fixtures.
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::format::{Refused, format};
@@ -11,7 +11,7 @@ fn laid_out(text: &str) -> Result<String, Refused> {
     format(FileId(0), &SourceFile::new("spec/a.yaml", text))
 }
 
-/// The text behind a heading up to the next one.
+/// Returns the text between a heading and the next one.
 fn part<'t>(case: &'t str, heading: &str) -> &'t str {
     let (_, behind) = case.split_once(heading).expect(heading);
     let end = behind.find("\n=====").map_or(behind.len(), |end| end + 1);
@@ -60,7 +60,7 @@ fn a_text_with_faults_is_refused_with_them() {
     }
 }
 
-/// Whatever stands in a file: what comes out is a text with the same comments, which comes out again as it is.
+/// The layout of any fixture keeps its comments, and a second pass changes nothing.
 #[test]
 fn every_fixture_is_laid_out_or_refused() {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
@@ -100,7 +100,7 @@ fn comments(text: &str) -> Vec<String> {
     texts
 }
 
-/// A comment behind a text without quotes would be a fault of the language; opened brackets must not make one.
+/// A comment after an unquoted string is error FC0126. Writing brackets as a block must not cause it.
 #[test]
 fn no_fault_comes_of_opened_brackets() {
     let text = "entities: { lamp: { zh: 灯, # one\n en: Lamp # two\n } }\n";

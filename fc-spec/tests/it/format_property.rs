@@ -1,7 +1,7 @@
-//! The layout of a file: whatever it looked like before, it says the same, has the same comments and stays as it is
-//! when it is laid out again.
+//! Property test of the layout of a file. The layout of any mutated file has the same meaning and the same comments,
+//! and a second pass changes nothing.
 //!
-//! `FC_FORMAT_CASES` is how many files are tried.
+//! `FC_FORMAT_CASES` sets the number of files to try.
 
 use crate::format_support::{Mutations, mutate};
 use fc_spec::diagnostic::{Faults, Format, render};
@@ -16,13 +16,13 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// A spec: its files by path, and what it says.
+/// A spec: its files by path, and its model as JSON.
 struct Seed {
     files: Vec<(String, String)>,
     says: Value,
 }
 
-/// Small specs with much of the language; their texts as they are laid out.
+/// Small specs that use much of the language, with the text of their files in the standard layout.
 static SEEDS: LazyLock<Vec<Seed>> = LazyLock::new(|| {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     [
@@ -36,7 +36,7 @@ static SEEDS: LazyLock<Vec<Seed>> = LazyLock::new(|| {
         read(&here.join(directory), "spec", &mut files);
         files.sort();
         for (_, text) in &mut files {
-            // Without comments below the head, which mutations do not carry over.
+            // Drops the comments below the head, which mutations do not keep.
             *text = laid_out(&mutate(text, Mutations::default(), 1));
         }
         let says = says(&files);
@@ -64,7 +64,8 @@ fn laid_out(text: &str) -> String {
     new.unwrap_or_else(|refused| panic!("{refused:?}\n{text}"))
 }
 
-/// The model, but for what says where a thing stands among others: lines, excerpts, the order and numbers of answers.
+/// Returns the model as JSON, without lines, excerpts, and the order and numbers of answers. These change with the
+/// layout.
 fn says(files: &[(String, String)]) -> Value {
     let sources = Sources::from_texts(files.iter().cloned());
     let mut faults = Faults::new();

@@ -1,29 +1,29 @@
-//! A spec file written in some other layout, comments and all, that says the same.
+//! Rewrites a spec file in another layout with the same meaning.
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::source::FileId;
 use fc_spec::syntax::{Node, NodeKind, Style, parse};
 use std::fmt::Write as _;
 
-/// What a text may have that its layout does away with, or keeps.
+/// Changes that a mutation may make. The layout undoes some of them and keeps the others.
 #[derive(Clone, Copy, Debug, Default)]
 #[allow(clippy::struct_excessive_bools, reason = "each may be there or not")]
 pub struct Mutations {
-    /// Keys of mappings with texts in another order.
+    /// Shuffles the keys of mappings that have `zh` and `en`.
     pub order: bool,
-    /// Comments, above and behind things.
+    /// Adds comments, above lines and at their ends.
     pub comments: bool,
-    /// Brackets where there were none, and none where there were.
+    /// Writes blocks as brackets, and brackets as blocks.
     pub brackets: bool,
-    /// Texts in other quotes, folded, or as blocks; nothing as `~`.
+    /// Writes strings in other quotes, folded, or as blocks, and null as `~`.
     pub texts: bool,
-    /// Blank lines where there were none.
+    /// Adds blank lines.
     pub blanks: bool,
-    /// Line ends of another system.
+    /// Ends lines with CRLF.
     pub crlf: bool,
 }
 
-/// The text of a file with some of that, other indentation and other white space; by a number that decides on each.
+/// Rewrites a file with these mutations, and with other indentation and white space. `seed` decides every detail.
 pub fn mutate(text: &str, mutations: Mutations, seed: u64) -> String {
     let mut faults = Faults::new();
     let tree = parse(FileId(0), text, &mut faults).expect("a file of the spec");
@@ -54,12 +54,12 @@ struct Writer<'t> {
     seed: u64,
     out: String,
     comments: usize,
-    /// A comment further in would be a part of the text above.
+    /// `true` after a block scalar, where an indented comment would become part of its text.
     behind_block: bool,
 }
 
 impl Writer<'_> {
-    /// A number below `end`.
+    /// Returns a pseudorandom number below `end`.
     fn dice(&mut self, end: usize) -> usize {
         self.seed ^= self.seed << 13;
         self.seed ^= self.seed >> 7;
@@ -87,7 +87,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What may stand above a line. `has_blank`: a blank line does in the original.
+    /// Writes blank lines and comments above a line. `has_blank`: the original has a blank line here.
     fn noise(&mut self, indent: usize, has_blank: bool) {
         let adds = self.mutations.blanks && self.dice(6) == 0;
         if has_blank || adds {
@@ -121,7 +121,7 @@ impl Writer<'_> {
         self.behind_block = false;
     }
 
-    /// Whether a comment may stand here: behind a text without quotes it would be a fault.
+    /// Returns `true` if a comment may follow here. After an unquoted string, it would be an error.
     fn may_comment(&self) -> bool {
         let line = self.out.rsplit('\n').next().unwrap_or_default();
         let last = line.split(' ').next_back().unwrap_or_default();
@@ -135,7 +135,7 @@ impl Writer<'_> {
         above.ends_with("\n\n")
     }
 
-    /// `shared`: on a line that has been begun.
+    /// Writes the entries and items of a node. `shared`: the first one continues a line.
     fn block(&mut self, node: Node<'_>, indent: usize, mut shared: bool) {
         let mut entries: Vec<_> = node.entries().collect();
         let is_declared = ["zh", "en"]
@@ -231,7 +231,7 @@ impl Writer<'_> {
         self.out.push(if is_list { ']' } else { '}' });
     }
 
-    /// White space in brackets.
+    /// Writes white space inside brackets.
     fn gap(&mut self, indent: usize) {
         let may_comment = self.may_comment();
         let spaces = 1 + self.dice(2);
@@ -295,7 +295,7 @@ impl Writer<'_> {
         self.behind_block = true;
     }
 
-    /// `is_text`: whether it says the same in quotes, whatever it looks like.
+    /// Writes a key or a scalar. `is_text`: the meaning is the same in quotes.
     fn scalar(&mut self, node: Node<'_>, indent: usize, is_text: bool) {
         let span = node.span();
         let written = &self.text[span.start..span.end];
@@ -314,7 +314,7 @@ impl Writer<'_> {
             _ if is_quoted => written.to_owned(),
             _ => format!("'{}'", scalar.text.replace('\'', "''")),
         };
-        // A text may be folded where one space stands alone.
+        // A single space may become a line break.
         let fold = quoted.match_indices(' ').map(|(at, _)| at).find(|at| {
             let around = (&quoted[..*at], &quoted[at + 1..]);
             !around.0.ends_with([' ', '\'', '"', '\\', '#', ':'])
@@ -332,7 +332,7 @@ impl Writer<'_> {
     }
 }
 
-/// Whether nothing in it would mean something else in brackets.
+/// Returns `true` if the node has the same meaning inside brackets.
 fn may_close(node: Node<'_>) -> bool {
     let is_plain = |text: &str| {
         !text.contains(|it: char| ",[]{}?#:&*!|>'\"%@`\n".contains(it)) && !text.is_empty()

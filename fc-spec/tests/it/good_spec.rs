@@ -1,4 +1,4 @@
-//! The small spec without faults in `good/`.
+//! The small spec without errors in `good/`.
 
 use fc_spec::diagnostic::{Faults, Format, render};
 use fc_spec::load::load;
@@ -7,22 +7,22 @@ use fc_spec::source::Sources;
 use std::fs;
 use std::path::Path;
 
-/// Its files, by their path below the spec's folder.
+/// Paths of its files below the spec's folder.
 pub const FILES: [&str; 2] = ["protocol.yaml", "commands/demo.yaml"];
 
-/// A file of `fc-spec/tests/`.
+/// Returns a file of `fc-spec/tests/`.
 pub fn read(path: impl AsRef<Path>) -> String {
-    // Of this crate, whichever crate's tests ask.
+    // Tests of other crates include this module, so the path names this crate.
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-spec/tests");
     fs::read_to_string(root.join(path)).expect("the file can be read")
 }
 
-/// The text of one of its files.
+/// Returns the text of one of its files.
 pub fn file(path: &str) -> String {
     read(Path::new("good").join(path))
 }
 
-/// Its model.
+/// Returns its model.
 pub fn model() -> Model {
     let sources = Sources::from_texts(FILES.map(|path| (format!("spec/{path}"), file(path))));
     let mut faults = Faults::new();

@@ -1,4 +1,5 @@
-//! A key of the language is written in its declaration, `language/grammar`; everything else asks for it by its field.
+//! The sources spell each key of the language only in its declaration, `language/grammar`. All other code refers to the
+//! key by its field.
 
 use fc_spec::model::Languages;
 use serde_json::Value;
@@ -6,13 +7,13 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// What reads a spec by its keys. The rest knows no spec, or writes words of other formats (SARIF, JSON Schema).
+/// Sources that read a spec by its keys. The others know no spec, or write words of other formats (SARIF, JSON Schema).
 const READERS: [&str; 2] = ["load", "scaffold.rs"];
 
-/// Where keys are declared.
+/// The sources that declare the keys.
 const HOME: &str = "language/grammar";
 
-/// Keys that mean something else as well, and what.
+/// Keys that have another meaning in the sources, and that meaning.
 const ALSO: [(&str, &str); 12] = [
     ("body", "what a fault calls a message"),
     ("command", "what a fault calls an operation"),
@@ -34,7 +35,7 @@ const ALSO: [(&str, &str); 12] = [
     ),
 ];
 
-/// All keys of the language, as its JSON Schema has them.
+/// Collects all keys of the language from its JSON Schema.
 fn keys(schema: &Value, found: &mut BTreeSet<String>) {
     let Value::Object(entries) = schema else {
         return;
@@ -52,7 +53,7 @@ fn keys(schema: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-/// Literals of a source, those of its comments and tests left out.
+/// Collects the string literals of the sources, except those in comments and tests.
 fn literals(found: &mut Vec<(String, String)>, root: &Path, path: &Path) {
     let name = path
         .strip_prefix(root)
@@ -72,7 +73,7 @@ fn literals(found: &mut Vec<(String, String)>, root: &Path, path: &Path) {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     for line in code.lines() {
         let line = line.split("//").next().unwrap_or_default();
-        // Every second part is inside quotes; escaped ones are in no key.
+        // Every second part is inside quotes. No key has an escaped quote.
         let inside = line.split('"').skip(1).step_by(2);
         found.extend(inside.map(|literal| (literal.to_owned(), name.clone())));
     }
@@ -95,7 +96,7 @@ fn no_key_is_spelled_outside_its_declaration() {
         .filter(|(literal, _)| !ALSO.iter().any(|(also, _)| also == literal))
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
-    // What is an exception no longer goes.
+    // An exception that is not needed must be removed.
     for (also, _) in ALSO {
         let is_found = found.iter().any(|(literal, _)| literal == also);
         assert!(

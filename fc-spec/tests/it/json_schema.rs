@@ -1,35 +1,35 @@
-//! JSON Schema as far as the schemas of this project go. For tests alone: a whole implementation would bring fifty crates
-//! along.
+//! Validates against JSON Schema, as far as the schemas of this project use it. It is for tests only, because a
+//! complete implementation would add fifty crates.
 
 use regex_lite::Regex;
 use serde_json::{Map, Value};
 
-/// A validator for the keywords that our schemas use, and no others.
+/// A validator for only the keywords that our schemas use.
 pub struct Validator<'s> {
-    /// The whole schema, in which references are looked up.
+    /// The whole schema, in which references are resolved.
     pub root: &'s Value,
 }
 
-/// What does not fit: where in the value, and by which keyword of the schema. Of several alternatives none of which fits it
-/// is the keyword that lists them.
+/// The place in a value that does not fit, and the keyword of the schema. If no alternative fits, it is the keyword
+/// that lists the alternatives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misfit {
-    /// The keys that lead there, joined by dots.
+    /// The keys that lead to the place, joined by dots.
     pub at: String,
-    /// The keyword, with the name of the key that is missing or unknown behind it.
+    /// The keyword, followed by the name of the key that is missing or unknown.
     pub keyword: String,
 }
 
 impl Validator<'_> {
-    /// Whether a value fits a part of the schema.
+    /// Returns `true` if a value fits a part of the schema.
     ///
     /// # Panics
-    /// If that has a keyword that is not known here: to pass it over would mean to check nothing.
+    /// If the schema has a keyword that this validator does not know. Ignoring it would skip a check.
     pub fn accepts(&self, schema: &Value, value: &Value) -> bool {
         self.misfit(schema, value, "").is_none()
     }
 
-    /// The first thing in the value at `at` that does not fit.
+    /// Returns the first part of the value at `at` that does not fit.
     ///
     /// # Panics
     /// As [`accepts`](Self::accepts).
@@ -114,7 +114,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Whether a keyword holds that looks at nothing but the value itself.
+    /// Returns `true` if the value fits a keyword whose misfit lies at the value itself.
     fn holds(&self, keyword: &str, argument: &Value, value: &Value) -> bool {
         let number = |value: &Value| value.as_f64();
         let count = argument

@@ -1,7 +1,8 @@
-//! The rules of the lint: `lint/rules.txt` has changes of the small spec in `lint/spec`, to which no rule objects, and what is found then.
+//! Tests the lint rules with the changes in `lint/rules.txt`. Each change starts from the small spec in `lint/spec`, to
+//! which no rule objects.
 //!
-//! A change has a title (`# …`), the text to be replaced in `commands/lamp.yaml` (`-…`) and what takes its place (`+…`). The lines with `>` are
-//! what is found, all of it, whatever its level; `BLESS=1` writes them.
+//! A change has a title (`# …`), the text to replace in `commands/lamp.yaml` (`-…`) and its replacement (`+…`). The
+//! lines with `>` are all findings of any level. `BLESS=1` writes them.
 
 use crate::syntax_support;
 use fc_spec::diagnostic::{Faults, Format, render};
@@ -24,7 +25,7 @@ fn file(path: &str) -> String {
     std::fs::read_to_string(directory().join(path)).expect("a file of the tests")
 }
 
-/// The small spec with other commands in it, and something behind them.
+/// Returns the small spec with other commands, and with `more` at the end of `protocol.yaml`.
 fn spec(commands: &str, more: &str) -> (Sources, Model) {
     let files = [
         ("spec/protocol.yaml", file("spec/protocol.yaml") + more),
@@ -42,7 +43,7 @@ fn spec(commands: &str, more: &str) -> (Sources, Model) {
     (sources, model.expect("no errors"))
 }
 
-/// Settings from the text of `fc.yaml`, and what is wrong with them as people see it.
+/// Reads settings from the text of `fc.yaml`. Returns them with the rendered errors.
 fn set(yaml: &str) -> (Settings, String) {
     let root = tempfile::tempdir().expect("a directory for the test");
     std::fs::write(root.path().join("fc.yaml"), yaml).expect("a file of the project");
@@ -54,7 +55,7 @@ fn set(yaml: &str) -> (Settings, String) {
     (settings, render(&found, &sources, Format::Text, Lang::En))
 }
 
-/// With every category switched on.
+/// Returns settings with every category switched on.
 fn everything() -> Settings {
     let levels = ["MINIMAL", "STANDARD", "DOCS", "WIRE", "SUNSET"];
     let levels = levels.map(|category| format!("{category}: warning"));
@@ -157,7 +158,7 @@ fn every_rule_finds_what_it_is_for() {
     }
     syntax_support::golden(&directory().join("rules.txt"), &actual);
     let rules = Rule::all().map(|rule| rule.code.number);
-    // The last ones are about rules of a project and waivers, which have tests of their own.
+    // The codes from FC0890 on are about project rules and waivers, which have separate tests.
     let unseen: Vec<_> = rules
         .filter(|code| *code < "FC0890" && !seen.contains(code))
         .collect();
@@ -192,7 +193,7 @@ fn house(yaml: &str) -> Vec<String> {
     shown.collect()
 }
 
-/// Each rule in `house.yaml`, and in the file that it names, says in its English text what it finds: names of things, in the order of the file.
+/// Each rule in `house.yaml` and `shared.yaml` lists in its English text the names that it finds.
 #[test]
 fn rules_of_the_project_find_what_they_say() {
     let yaml = file("house.yaml");
@@ -292,7 +293,7 @@ fn levels_apply_from_rule_to_category() {
     }
 }
 
-/// What a waiver needs, with this finding and this date.
+/// Returns a waiver of this finding that ends at this date.
 fn waiver(id: &str, until: &str) -> String {
     format!("waivers:\n  {id}: {{ zh: 已知, en: Known, by: Owner, until: {until} }}\n")
 }
@@ -320,7 +321,7 @@ fn waivers_accept_a_finding_for_a_time() {
         find(&waiver(&id, "2026-11"), "2026-12-01").1,
         ["FC0817", "FC0891"]
     );
-    // A waiver of something else, and one that `fcproto diff` has to judge.
+    // A waiver of another finding, and one that only `fcproto diff` can judge.
     let other = "FC0817-000000000000";
     assert_eq!(
         find(&waiver(other, "2026-11"), TODAY).1,
@@ -330,7 +331,7 @@ fn waivers_accept_a_finding_for_a_time() {
     assert_eq!(find(&waiver(of_diff, "2026-11"), TODAY).1, ["FC0817"]);
 }
 
-/// Lines and wording may change without a waiver losing what it accepts.
+/// A waiver stays valid when lines move or wording changes.
 #[test]
 fn a_fingerprint_does_not_depend_on_lines() {
     let commands =

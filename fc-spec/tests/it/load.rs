@@ -1,4 +1,4 @@
-//! What the small good spec becomes.
+//! Tests the model of the small valid spec.
 
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
@@ -139,7 +139,7 @@ fn header_fields_know_their_place() {
     assert_eq!(model.frame.header_len(), 36);
 }
 
-/// Order of the files and of the lines in them.
+/// Answers are in the order of the files and of their lines.
 #[test]
 fn answers_keep_their_order() {
     let model = good_spec::model();
@@ -197,7 +197,7 @@ fn inline_type_may_have_a_name() {
     assert_eq!(body.expect("of a body").path, ["data", "choice"]);
 }
 
-/// A stream has the code of the command that starts it, wherever either stands, and its keys stand alone.
+/// A stream has the code of the command that starts it, in whichever file each is. Its body has no envelope.
 #[test]
 fn a_stream_shares_the_code_of_its_command() {
     let streams = "group: { id: a_before, zh: 前, en: Before }\nstreams:\n  \

@@ -1,4 +1,5 @@
-//! The integration tests, as one program: a program per file would link the crate each time. `syntax_memory` needs a process of its own.
+//! All integration tests are one program, because a program per file would link the crate each time. Only
+//! `syntax_memory` needs a separate process.
 
 #![allow(
     clippy::cast_precision_loss,

@@ -1,8 +1,8 @@
-//! Three versions of a file made into one, by examples.
+//! Three-way merges of a file, with the examples in `merge/cases.txt`.
 
 use fc_spec::merge::merge;
 
-/// What stands behind a heading that begins with these words, up to the next one.
+/// Returns the text after the heading that begins with these words, up to the next heading.
 fn part<'t>(case: &'t str, heading: &str) -> Option<&'t str> {
     let (_, behind) = case.split_once(&format!("\n===== {heading}"))?;
     let (title, text) = behind.split_once('\n')?;

@@ -1,4 +1,4 @@
-//! A spec with faults is read as far as it goes, and everything of it has its place.
+//! A spec with errors is read as far as possible, and every item of it has its place.
 
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
@@ -7,7 +7,7 @@ use fc_spec::load::{Loaded, load};
 use fc_spec::model::{Availability, TypeDef, TypeShape};
 use fc_spec::source::Sources;
 
-/// The good spec with some of its text replaced, and how many errors it has.
+/// Loads the good spec with some of its text replaced, and returns its number of errors.
 fn loaded(changes: &[(&str, &str)]) -> (Sources, Loaded, usize) {
     let mut seen = 0;
     let files = good_spec::FILES.map(|path| {
@@ -64,14 +64,14 @@ fn parts_without_errors_are_read() {
             ("thing_picture", Some(0x0501))
         ]
     );
-    // The field whose type there is not is left out, the table whose row it is not, too.
+    // A field of an unknown type is left out, and so is a table with an unknown row type.
     assert_eq!(
         fields(&loaded, "GetThingResponseData"),
         ["name", "x", "y", "tags", "choice"]
     );
     assert_eq!(fields(&loaded, "Size"), ["width", "label", "depth"]);
     assert!(partial.tables.is_empty());
-    // Where it is written is known all the same.
+    // The place of the field is still known.
     let color = field("GetThingResponseData", "color");
     assert!(definitions(&sources).get(&color).is_some());
     assert!(loaded.model().is_none());
@@ -101,7 +101,7 @@ fn references_of_readable_parts_resolve() {
     );
 }
 
-/// The words of limits.
+/// Returns the words that limit the availability of items, with their kinds.
 fn limits(words: &Availability) -> Vec<(&'static str, String)> {
     let kinds = [
         ("audience", &words.audiences),
@@ -115,7 +115,7 @@ fn limits(words: &Availability) -> Vec<(&'static str, String)> {
     named.collect()
 }
 
-/// Kinds and names of the types, and of what is in them.
+/// Returns the kinds and names of types, and of their fields, values and variants.
 fn types(types: &[TypeDef]) -> Vec<(&'static str, String)> {
     let mut all = Vec::new();
     for ty in types {
@@ -142,7 +142,7 @@ fn types(types: &[TypeDef]) -> Vec<(&'static str, String)> {
     all
 }
 
-/// Kinds of places that are called as their keys say.
+/// Kinds of items whose name is their key.
 const KEYED: [&str; 9] = [
     "field",
     "command",

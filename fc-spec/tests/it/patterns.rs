@@ -1,4 +1,4 @@
-//! The table of patterns that every language is held to: `conformance/patterns.json`.
+//! Tests patterns with the table that all languages share, `conformance/patterns.json`.
 
 use fc_spec::model::Pattern;
 use regex_lite::Regex;

@@ -1,5 +1,5 @@
-//! The schema of the spec language against the loader: what the loader takes the schema takes, and what is
-//! wrong with the shape both refuse.
+//! Compares the schema of the spec language with the loader. The schema accepts every valid file and refuses errors of
+//! the shape, as the loader does.
 
 use crate::good_spec;
 use crate::json_schema::Validator;
@@ -38,7 +38,7 @@ fn good_files_are_accepted() {
     }
 }
 
-/// Faults of the shape that a schema can tell. The others need the spelling (`0x0a06`, `017`), which YAML readers do
+/// Errors of the shape that a schema can detect. The others need the spelling (`0x0a06`, `017`), which YAML readers do
 /// not keep, or more than one place.
 const SEEN_BY_SCHEMA: &[&str] = &[
     "FC0101", "FC0102", "FC0103", "FC0104", "FC0107", "FC0108", "FC0109", "FC0110", "FC0111",
@@ -67,7 +67,7 @@ fn files_with_faults_of_shape_are_refused() {
     assert!(seen >= SEEN_BY_SCHEMA.len(), "only {seen} fixtures");
 }
 
-/// Settings, and whether both the reader and the schema accept them.
+/// The reader and the schema both accept the valid settings, and both refuse the others.
 #[test]
 fn settings_are_accepted_by_reader_and_schema() {
     let root: Value = serde_json::from_str(&project_schema()).expect("the schema is JSON");
@@ -113,7 +113,7 @@ fn every_definition_is_used() {
     }
 }
 
-/// An editor offers defaults and examples, so each is to be taken where it stands.
+/// Editors offer defaults and examples, so each must be valid in its place.
 #[test]
 fn offered_values_are_valid() {
     let root: Value = serde_json::from_str(&schema(Languages::All)).expect("the schema is JSON");

@@ -1,5 +1,5 @@
-//! What an editor says by the schema of the spec language: the first thing that does not fit is the slip itself, where it
-//! is, and not "none of these alternatives".
+//! Editors show the first misfit of the spec language's schema. It must be the slip itself, at its place, and not "none
+//! of these alternatives".
 
 use crate::json_schema::Validator;
 use crate::yaml_as_json;
@@ -7,7 +7,7 @@ use fc_spec::language::schema;
 use fc_spec::model::Languages;
 use serde_json::Value;
 
-/// A sound file. What a row replaces occurs once in it.
+/// A valid file. The text that a row of `SLIPS` replaces occurs once in it.
 const FILE: &str = r"group: { id: demo, zh: 演示, en: Demo }
 commands:
   get_thing:
@@ -34,7 +34,7 @@ types:
   Size: { zh: 尺寸, en: Size, fields: {} }
 ";
 
-/// What is replaced, by what, where the first misfit is, and by which keyword.
+/// The replaced text, its replacement, the place of the first misfit, and its keyword.
 const SLIPS: &[(&str, &str, &str, &str)] = &[
     (
         "id: demo, zh: 演示, en: Demo",

@@ -1,8 +1,8 @@
-//! The owner's answers, written down: `settle/asked.yaml` is asked, `settle/answers.txt` says what is answered and
-//! which lines change, and nothing else may.
+//! Tests how an owner's answer changes a spec. `settle/asked.yaml` has the questions. `settle/answers.txt` has the
+//! answers and the lines that each may change.
 //!
-//! A case has a title (`# …`), the question (`? …`), what is said of its facts (`= path value`, a value of several
-//! lines with `\n` in it), and behind `>` what changes, or why nothing does; `BLESS=1` writes that.
+//! A case has a title (`# …`), the question (`? …`) and the values of its facts (`= path value`, with `\n` as line
+//! break). The lines with `>` are the change, or the reason for none. `BLESS=1` writes them.
 
 use crate::good_spec;
 use crate::syntax_support;
@@ -46,7 +46,7 @@ fn say(id: &str, values: Vec<(String, String)>) -> Said {
     }
 }
 
-/// What is asked of a question, and the comment lines about it.
+/// An owner's answer to a question, and the lines of `answers.txt` that describe it.
 struct Case {
     head: String,
     said: Said,
@@ -74,7 +74,7 @@ fn cases(text: &str) -> Vec<Case> {
     cases
 }
 
-/// The file with the lines of a diff changed: what is not in the diff is as it was.
+/// Returns the file with a diff applied. Lines outside of the diff stay the same.
 fn patched(before: &str, diff: &str) -> String {
     let mut lines = before.lines();
     let mut after = Vec::new();
@@ -134,7 +134,7 @@ fn the_lines_to_edit_are_those_that_an_answer_changes() {
     let model = model(&before);
     let mut open = 0;
     for question in model.questions.iter().filter(|question| question.is_open()) {
-        // A value that stands nowhere else, and a body that stands on one line.
+        // A value that occurs nowhere else, and a body on one line.
         let value = |path: &str| match path {
             "request" | "response" => "{zq1}",
             _ => "zq1",
@@ -144,7 +144,7 @@ fn the_lines_to_edit_are_those_that_an_answer_changes() {
         let values = about.map(|fact| (fact.path.clone(), value(&fact.path).to_owned()));
         let said = say(&question.id, values.collect());
         let settled = match settle(&before, Languages::All, &said) {
-            // What cannot be written has no lines to show.
+            // An answer that cannot be written has no lines to show.
             Err(SettleError::Layout { .. }) if question.edit.is_empty() => continue,
             settled => settled.unwrap_or_else(|error| panic!("{error}")),
         };

@@ -1,8 +1,8 @@
-//! Slips of an owner's pen, and what is said about each: `slips/*.txt`.
+//! Slips that owners make in a spec, and the errors that each causes: `slips/*.txt`.
 //!
-//! A slip changes the small good spec of `good/`. It has a title (`# …`), the file (`@ …`; `commands/demo.yaml` where
-//! none is named), the lines to be replaced (`-…`) and those that take their place (`+…`; at the end of the file where
-//! there is nothing to replace). The lines with `>` are what is found, all of it; `BLESS=1` writes them.
+//! A slip changes the small valid spec in `good/`. It has a title (`# …`) and a file (`@ …`, by default
+//! `commands/demo.yaml`). Its new lines (`+…`) replace the old ones (`-…`), or go to the end of the file if there are
+//! none. The lines with `>` are all errors. `BLESS=1` writes them.
 
 use crate::both_languages;
 use crate::declared_faults;
@@ -53,7 +53,7 @@ impl Slip {
         self.file.as_deref().unwrap_or("commands/demo.yaml")
     }
 
-    /// The good spec with the slip in it.
+    /// Returns the good spec with the slip.
     fn sources(&self) -> Sources {
         let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/good");
         let files = FILES.map(|file| {
@@ -80,7 +80,7 @@ fn faults(sources: &Sources) -> Faults {
     faults
 }
 
-/// A fault as the data has it: the most important in few lines.
+/// Renders an error in the notation of `slips/*.txt`: its main points in few lines.
 fn show(sources: &Sources, fault: &Diagnostic) -> String {
     let at = sources.line_col(fault.primary.span);
     let path = sources.path(fault.primary.span).trim_start_matches("spec/");
@@ -179,7 +179,7 @@ fn slips_lie_at_the_keys_that_declare_them() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The first of its fixes is the likeliest: with it the fault is gone, and no other has come in its place.
+/// The first fix is the likeliest. With it, the line of the error has no error.
 #[test]
 fn the_first_fix_mends_a_slip() {
     each_file(|_, text| {

@@ -1,4 +1,4 @@
-//! The spec of this project loads.
+//! The spec of this project loads without errors.
 
 use camino::Utf8Path;
 use fc_spec::diagnostic::{Faults, Format, render};

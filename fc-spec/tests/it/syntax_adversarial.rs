@@ -1,4 +1,4 @@
-//! Files that go wrong, and what is said about each: `adversarial/*.yaml` beside `*.txt`.
+//! Malformed files, `adversarial/*.yaml`, and the errors of each in the `*.txt` next to it.
 
 use crate::both_languages;
 use crate::syntax_support;
@@ -34,7 +34,7 @@ fn every_fixture_has_its_faults() {
     }
 }
 
-/// Wide characters shift no caret and no column, whatever the format.
+/// Wide characters shift no caret and no column in any format.
 #[test]
 fn columns_are_characters_in_every_format() {
     let path = syntax_support::fixtures().join("cjk.yaml");
@@ -58,7 +58,7 @@ fn columns_are_characters_in_every_format() {
     }
 }
 
-/// A spec with many broken files shows the faults of all of them in one run.
+/// A spec with many broken files shows the errors of all of them in one run.
 #[test]
 fn all_files_in_one_run() {
     let (sources, mut faults) = syntax_support::read(&[
@@ -92,7 +92,7 @@ fn files_that_the_spec_does_not_look_for_are_faults() {
         ("b.YAML", ""),
         ("c.json", "[1"),
         ("commands/d.yml", ""),
-        // A directory that is named like a file of the spec.
+        // A directory with the name of a spec file.
         ("commands/map.yaml/x.yaml", ""),
         ("drafts/e.yaml", ""),
         ("drafts/notes.md", ""),
@@ -111,14 +111,14 @@ fn files_that_the_spec_does_not_look_for_are_faults() {
         .map(|(_, file)| file.path.as_str());
     assert_eq!(whole.collect::<Vec<_>>(), ["spec/a.yaml"]);
 
-    // The same by another way.
+    // An absolute path to the spec finds the same files.
     let mut faults = Faults::new();
     let sources = read_dir(Path::new("/nowhere"), &spec, &mut faults);
     let paths = sources.iter().map(|(_, file)| file.path.clone());
     assert_eq!(paths.count(), 5);
 }
 
-/// What is no regular file is not opened, so that nothing waits for a pipe's other end.
+/// Only regular files are opened. A pipe could block forever, and a device may have no end.
 #[cfg(unix)]
 #[test]
 fn links_are_followed_to_files_only() {
@@ -149,7 +149,7 @@ fn links_are_followed_to_files_only() {
     );
 }
 
-/// A fix does what it says: with all of them applied, again and again, their faults are gone.
+/// Fixes do what they promise: applied one after another, they remove their errors.
 #[test]
 fn fixes_mend() {
     for (name, code) in [("tabs.yaml", "FC0009"), ("control.yaml", "FC0006")] {

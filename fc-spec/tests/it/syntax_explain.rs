@@ -1,10 +1,10 @@
-//! The explanations of the fault codes, and that those of the syntax tell the truth.
+//! Every error code has an explanation in both languages, and the examples of the syntax codes are correct.
 
 use crate::syntax_support;
 use fc_spec::diagnostic::FaultCode;
 use fc_spec::model::Lang;
 
-/// The fenced blocks of an explanation: what stands behind the fence, and the lines inside.
+/// Returns the fenced blocks of an explanation: the text after the fence, and the lines inside.
 fn blocks(text: &str) -> Vec<(&str, String)> {
     let mut blocks = Vec::new();
     let mut lines = text.lines();
@@ -41,7 +41,7 @@ fn every_code_has_a_bad_and_a_good_example() {
     }
 }
 
-/// What is told in one language and not in the other would be a second fault: the examples are the same.
+/// Both languages have the same examples, so neither explains more than the other.
 #[test]
 fn every_code_is_explained_in_both_languages() {
     let is_chinese = |text: &str| text.contains(|c| matches!(c, '\u{4E00}'..='\u{9FFF}'));

@@ -1,4 +1,4 @@
-//! Files that are too much: each ends in a fault, within bounds.
+//! Files that exceed a limit. Each gives an error, within bounded time and memory.
 
 use crate::syntax_support;
 use std::fmt::Write as _;
@@ -82,7 +82,7 @@ fn many_faults_are_counted_not_kept() {
     drop(sources);
 }
 
-/// One line of eight megabytes: no format shows it, and none takes minutes over it.
+/// One line of eight megabytes. No format prints it, and none takes minutes for it.
 #[test]
 fn long_line() {
     let text = format!("{{{}}}", "a: 1, ".repeat(limits::FILE_BYTES / 6 - 1));

@@ -1,4 +1,4 @@
-//! The tree of every spec file says what another YAML reader reads.
+//! The tree of every spec file equals the value that another YAML reader gives.
 
 use crate::syntax_support;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use fc_spec::syntax::{Node, NodeKind, Style};
 use serde_yaml::Value;
 
-/// Reads the plain scalars of the YAML core schema; the tree leaves them as spelled.
+/// Resolves plain scalars by the YAML core schema. The tree keeps them as spelled.
 fn value(node: Node<'_>) -> Value {
     match node.kind() {
         NodeKind::Null => Value::Null,

@@ -1,4 +1,4 @@
-//! Whatever stands in a file: no panic, and every span lies where it should.
+//! Property tests of the parser. No input causes a panic, and every span lies inside the file and inside its parent.
 
 use crate::syntax_support;
 use std::path::Path;
@@ -24,7 +24,7 @@ static SEEDS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     .collect()
 });
 
-/// Words that matter to YAML.
+/// Tokens that matter to a YAML parser.
 const TOKENS: &[&str] = &[
     ":",
     ": ",

@@ -1,4 +1,4 @@
-//! What the renderers do with odd places.
+//! Tests the renderers with unusual places and texts.
 
 use fc_spec::diagnostic::{Diagnostic, FaultCode, Faults, Format, nearest, render, summary};
 use fc_spec::model::Lang;
@@ -91,7 +91,7 @@ help: a type with a similar name exists
     assert_eq!(text("a: ind\n", fault), expected);
 }
 
-/// The renderer's own words are Chinese too, and what is marked is as wide as Chinese characters are.
+/// The renderer's labels are Chinese too, and carets are as wide as Chinese characters.
 #[test]
 fn a_fault_in_chinese() {
     let span = Span::new(FILE, 5, 11);
@@ -166,7 +166,7 @@ fn places_beyond_the_text_do_no_harm() {
     }
 }
 
-/// A fault cannot smuggle an annotation or an escape sequence into the output.
+/// Text from the spec cannot inject an annotation or an escape sequence into the output.
 #[test]
 fn text_from_the_spec_stays_text() {
     let sources = Sources::from_texts([("spec/a,b:c%.yaml", "a: \u{1b}[31mred\n")]);

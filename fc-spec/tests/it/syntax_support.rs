@@ -1,4 +1,4 @@
-//! What the tests of the syntax share.
+//! Helpers that the tests of the syntax share.
 
 use std::path::{Path, PathBuf};
 
@@ -6,12 +6,12 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::source::{FileId, Sources};
 use fc_spec::syntax::{Tree, parse, read_dir};
 
-/// Directory of the tests' files.
+/// Returns the directory of the malformed files.
 pub fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/adversarial")
 }
 
-/// Files of a directory with this extension, sorted.
+/// Returns the files of a directory with this extension, sorted.
 pub fn files(directory: &Path, extension: &str) -> Vec<PathBuf> {
     let mut files: Vec<_> = std::fs::read_dir(directory)
         .expect("the directory exists")
@@ -22,7 +22,7 @@ pub fn files(directory: &Path, extension: &str) -> Vec<PathBuf> {
     files
 }
 
-/// A spec of files with these names and bytes, read from a disk.
+/// Writes files with these names and bytes to a disk, and reads them as a spec.
 pub fn read(files: &[(&str, &[u8])]) -> (Sources, Faults) {
     let root = tempfile::tempdir().expect("a directory for the test");
     let spec = root.path().join("spec");
@@ -35,7 +35,7 @@ pub fn read(files: &[(&str, &[u8])]) -> (Sources, Faults) {
     (sources, faults)
 }
 
-/// The trees of the files that are whole, and all faults in order.
+/// Parses the files that were read whole. Returns their trees, and sorts all errors.
 pub fn parse_all<'s>(sources: &'s Sources, faults: &mut Faults) -> Vec<Option<Tree<'s>>> {
     let trees = sources
         .iter()
@@ -46,7 +46,7 @@ pub fn parse_all<'s>(sources: &'s Sources, faults: &mut Faults) -> Vec<Option<Tr
     trees
 }
 
-/// The tree and the faults of a text.
+/// Parses a text. Returns its tree and its errors.
 pub fn parse_text(text: &str) -> (Sources, Option<Tree<'_>>, Faults) {
     let sources = Sources::from_texts([("spec/test.yaml", text)]);
     let mut faults = Faults::new();
@@ -55,12 +55,12 @@ pub fn parse_text(text: &str) -> (Sources, Option<Tree<'_>>, Faults) {
     (sources, tree, faults)
 }
 
-/// Numbers of the faults, in order.
+/// Returns the codes of the errors, in order.
 pub fn codes(faults: &Faults) -> Vec<&'static str> {
     faults.iter().map(|fault| fault.code.as_str()).collect()
 }
 
-/// Compares with a golden file; with `BLESS=1` in the environment, writes it.
+/// Compares with a golden file. With `BLESS=1` in the environment, writes it first.
 pub fn golden(path: &Path, actual: &str) {
     if std::env::var_os("BLESS").is_some() {
         std::fs::write(path, actual).expect("the golden file can be written");

@@ -1,4 +1,4 @@
-//! Where a spec names its things: every name leads to what it names, and every thing that has to be named is.
+//! References in a spec. Every name leads to its declaration, and every declaration that needs a use has one.
 
 use crate::good_spec;
 use fc_spec::diagnostic::Faults;
@@ -9,7 +9,7 @@ use fc_spec::source::{FileId, SourceFile, Sources};
 use fc_spec::syntax::parse;
 use std::path::Path;
 
-/// The small spec, and the one that uses every corner of the language.
+/// Returns the small spec, and the one that uses every part of the language.
 fn specs() -> [Sources; 2] {
     let good = good_spec::FILES.map(|path| (format!("spec/{path}"), good_spec::file(path)));
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fc-codegen/tests/docs");
@@ -32,7 +32,7 @@ fn every_name_leads_to_what_it_names() {
     }
 }
 
-/// Of these the spec says itself that something has to name them.
+/// The language requires a use of every type, entity, store and coordinate system.
 #[test]
 fn every_thing_that_has_to_be_named_is() {
     for sources in specs() {
@@ -71,7 +71,7 @@ fn no_offset_of_a_file_is_too_odd() {
     assert!(empty.is_none());
 }
 
-/// A file that has changed, that has become no YAML, and that is as it was again: each time it is as if all were read anew.
+/// A file changes, becomes invalid YAML, and gets its old text back. Each time, the updated index equals a new one.
 #[test]
 fn index_of_files_that_stay_finds_what_a_new_one_does() {
     for sources in specs() {

@@ -1,8 +1,8 @@
-//! YAML as an editor's language server sees it.
+//! Reads YAML as an editor's language server does.
 
 use serde_json::Value;
 
-/// The value of a text.
+/// Returns the value of a YAML text as JSON.
 pub fn parse(text: &str) -> Value {
     let yaml: serde_yaml::Value = serde_yaml::from_str(text).expect("the text is YAML");
     json_of(&yaml)

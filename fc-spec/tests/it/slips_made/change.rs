@@ -1,25 +1,25 @@
-//! What a maker does to a spec, and where the fault of it has to be.
+//! The change that a maker makes to a spec, and the places where its error may be.
 
 use super::place::{At, Spec};
 use fc_spec::source::{Sources, Span};
 use std::ops::Range;
 
-/// A stretch of a file replaced.
+/// A range of a file and its replacement.
 #[derive(Clone, Debug)]
 struct Edit {
     file: usize,
     at: Range<usize>,
     new: String,
-    /// Whether its whole lines are meant.
+    /// `true` if an error anywhere on the changed lines is right.
     lines: bool,
 }
 
-/// What a slip changes.
+/// The edits of a slip.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// In the order of the files and their texts.
+    /// In the order of the files and of the positions in them.
     edits: Vec<Edit>,
-    /// Places of the spec as it was that a careful person may point at as well.
+    /// Other places where an error is right, as ranges of the unchanged spec.
     also: Vec<(usize, Range<usize>)>,
 }
 
@@ -38,14 +38,14 @@ impl Change {
         }
     }
 
-    /// A second edit of its file, behind the others.
+    /// Adds an edit of the same file, after the others.
     pub fn and(mut self, at: Range<usize>, new: impl Into<String>) -> Self {
         let second = Self::new(self.edits[0].file, at, new);
         self.edits.extend(second.edits);
         self
     }
 
-    /// Both changes.
+    /// Combines both changes.
     pub fn with(&self, other: &Self) -> Self {
         let mut both = self.clone();
         both.edits.extend(other.edits.iter().cloned());
@@ -54,7 +54,7 @@ impl Change {
         both
     }
 
-    /// Whether two changes are in different files, or so many bytes apart.
+    /// Returns `true` if the changes are in different files, or more than `bytes` apart.
     pub fn is_apart(&self, other: &Self, bytes: usize) -> bool {
         let apart = |a: &Edit, b: &Edit| {
             a.file != b.file || a.at.end + bytes < b.at.start || b.at.end + bytes < a.at.start
@@ -64,12 +64,12 @@ impl Change {
             .all(|a| other.edits.iter().all(|b| apart(a, b)))
     }
 
-    /// Whether both change the same file.
+    /// Returns `true` if both change the same file.
     pub fn shares_file(&self, other: &Self) -> bool {
         self.edits[0].file == other.edits[0].file
     }
 
-    /// The key of a place is a right answer too.
+    /// Accepts an error at the key of a place too.
     pub fn or(mut self, at: At<'_>) -> Self {
         let key = if at.key.is_empty() {
             at.value.clone()
@@ -80,19 +80,19 @@ impl Change {
         self
     }
 
-    /// The value of a place is a right answer too.
+    /// Accepts an error at the value of a place too.
     pub fn or_value(mut self, at: At<'_>) -> Self {
         self.also.push((at.file, at.value.clone()));
         self
     }
 
-    /// Anything on the lines that were changed is right.
+    /// Accepts an error anywhere on the changed lines.
     pub fn on_its_lines(mut self) -> Self {
         self.edits.iter_mut().for_each(|edit| edit.lines = true);
         self
     }
 
-    /// The spec's files with the change.
+    /// Returns the spec's files with the change.
     pub fn apply(&self, spec: &Spec) -> Vec<(String, String)> {
         let mut files = spec.files.clone();
         for edit in self.edits.iter().rev() {
@@ -101,7 +101,7 @@ impl Change {
         files
     }
 
-    /// The places that a fault of this change may have, where all of `done` was changed.
+    /// Returns the places where an error of this change is right, after all of `done` was applied.
     pub fn targets(&self, spec: &Spec, done: &Self) -> Vec<(usize, Range<usize>)> {
         let files = done.apply(spec);
         let mut targets = Vec::new();
@@ -126,7 +126,7 @@ impl Change {
         targets
     }
 
-    /// Where a byte of a file is after the change.
+    /// Returns the position of a byte of a file after the change. `behind`: text inserted at the byte comes before it.
     fn moved(&self, file: usize, byte: usize, behind: bool) -> usize {
         let mut moved = byte;
         for edit in self.edits.iter().filter(|edit| edit.file == file) {
@@ -139,7 +139,7 @@ impl Change {
     }
 }
 
-/// The whole lines of a stretch, without their blanks at either end.
+/// Returns the whole lines of a range, without the last line end.
 fn lines_of(text: &str, at: Range<usize>) -> Range<usize> {
     let inside = text[at.clone()]
         .strip_suffix('\n')
@@ -151,7 +151,7 @@ fn lines_of(text: &str, at: Range<usize>) -> Range<usize> {
     start..end
 }
 
-/// A slip: what was done where.
+/// A slip: its kind, its place and its change.
 pub struct Slip {
     pub kind: &'static str,
     pub title: String,
@@ -164,7 +164,8 @@ impl Slip {
     }
 }
 
-/// Whether a fault points at one of the targets: it touches it, and begins no earlier than the line on which that begins.
+/// Returns `true` if an error hits one of the targets. It touches the target, and begins no earlier than the target's
+/// first line.
 pub fn hits(sources: &Sources, span: Span, targets: &[(usize, Range<usize>)]) -> bool {
     targets.iter().any(|(file, at)| {
         let Some((id, source)) = sources.iter().nth(*file) else {
@@ -177,29 +178,29 @@ pub fn hits(sources: &Sources, span: Span, targets: &[(usize, Range<usize>)]) ->
     })
 }
 
-/// What the makers write with.
+/// The changes that makers use.
 impl At<'_> {
-    /// Its value replaced.
+    /// Replaces its value.
     pub fn set(self, text: impl Into<String>) -> Change {
         Change::new(self.file, self.value.clone(), text)
     }
 
-    /// Its key replaced.
+    /// Replaces its key.
     pub fn rename(self, text: impl Into<String>) -> Change {
         Change::new(self.file, self.key.clone(), text)
     }
 
-    /// What stands between key and value replaced.
+    /// Replaces the text between key and value.
     pub fn between(self, text: &str) -> Change {
         Change::new(self.file, self.key.end..self.value.start, text)
     }
 
-    /// Text put in at a byte.
+    /// Inserts text at a byte.
     pub fn insert(self, at: usize, text: impl Into<String>) -> Change {
         Change::new(self.file, at..at, text)
     }
 
-    /// Taken out: of a row in brackets with its comma, else its lines.
+    /// Removes the entry: inside brackets with its comma, otherwise with its lines.
     pub fn removed(self) -> Change {
         let text = self.whole();
         let at = if !self.flow {
@@ -216,7 +217,7 @@ impl At<'_> {
         Change::new(self.file, at, "")
     }
 
-    /// Its lines moved by so many blanks.
+    /// Moves its lines by a number of blanks. Returns `None` if a line has too few.
     pub fn shifted(self, by: isize) -> Option<Change> {
         let lines = self.lines();
         let text = &self.whole()[lines.clone()];

@@ -1,17 +1,17 @@
-//! Slips made by script, and what is said about each: one fault, where the slip is.
+//! Slips made by a script. Each must cause exactly one error, at the slip.
 //!
-//! `makers` has a small function for each kind of slip. It looks at a place of a spec by its shape ("a field in brackets
-//! with a built-in type", "a `zh:` in a block") and says what goes wrong there and where a fault has to be. Of all
-//! places that a kind fits, a few are taken by a hash of their path, so that the same spec always gives the same slips.
+//! `makers` has a small function for each kind of slip. It finds a place in a spec by its shape, such as "a field in
+//! brackets with a built-in type" or "a `zh:` in a block". It returns the change and the places where an error is
+//! right. A hash of the path selects a few places for each kind, so the same spec always gives the same slips.
 //!
-//! The spec is a copy of a part of the real one, kept in `spec/`: what an owner edits in the real one must not decide
-//! whether this test passes, and a whole one per slip would take minutes. `SLIPS_OF=FOLDER` makes the slips from another
-//! spec, such as the real one, and then only prints what becomes of them.
+//! The spec in `spec/` is a copy of a part of the real one. Edits of the real spec must not decide if this test passes,
+//! and a whole spec per slip would take minutes. `SLIPS_OF=FOLDER` makes the slips from another spec, such as the real
+//! one, and only prints the results.
 //!
-//! **The rule.** A fault hits if its primary place touches what was changed, or the one other place that the maker names
-//! (of a missing key what should have it, of a removed type who uses it), and begins no earlier than the line on which
-//! that begins. Where punctuation or indentation was changed, what was changed is the line: nobody can tell which of
-//! its marks is the wrong one. Warnings count like errors. A slip is well told if there is exactly one fault, and it hits.
+//! **The rule.** An error hits if its primary place touches the change, or another place that the maker names. Such a
+//! place is the parent of a missing key, or the user of a removed type. The error must not begin before the first line
+//! of that place. After a change of punctuation or indentation, the place is the whole line, because any of its marks
+//! may be the wrong one. Warnings count like errors. A slip passes if there is exactly one error and it hits.
 
 mod change;
 mod makers;
@@ -27,19 +27,19 @@ use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-/// Slips of each kind.
+/// Maximum number of slips of each kind.
 const OF_A_KIND: usize = 2;
-/// Slips, and kinds of them, that there must be for the shares to say anything.
+/// Minimum numbers of slips and of their kinds, so that the shares are meaningful.
 const SLIPS: usize = 300;
 const KINDS: usize = 40;
-/// Share of the slips that are told by one fault in the right place, and of the pairs of which both are found, in percent.
+/// Minimum share in percent: of slips with one error in the right place, and of pairs with both errors found.
 const SHARE: f64 = 95.0;
-/// Pairs of slips.
+/// Number of pairs of slips.
 const PAIRS: usize = 100;
 
-/// Bytes between the two slips of a pair that lie in one file.
+/// Minimum distance in bytes between the two slips of a pair in one file.
 const APART: usize = 1000;
-/// Kinds of slips that make two files of one, or cut it off: of the rest nothing can be said before they are mended.
+/// Kinds of slips that hide other errors of the file until they are fixed. Many of them split the file or cut it off.
 const HIDES: &[&str] = &[
     "a conflict of two sides",
     "a conflict around an operation",
@@ -60,16 +60,16 @@ const HIDES: &[&str] = &[
     "a file without a word",
 ];
 
-/// What becomes of a slip.
+/// The result of a slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
-    /// One fault, in the right place.
+    /// One error, in the right place.
     One,
-    /// One fault, elsewhere.
+    /// One error, elsewhere.
     Elsewhere,
-    /// Several faults.
+    /// Several errors.
     Several,
-    /// None.
+    /// No error.
     Unnoticed,
 }
 
@@ -80,12 +80,12 @@ fn spec() -> Spec {
     )
 }
 
-/// The folder of another spec.
+/// Returns the folder of another spec, if `SLIPS_OF` names one.
 fn other() -> Option<PathBuf> {
     std::env::var_os("SLIPS_OF").map(PathBuf::from)
 }
 
-/// The spec, its slips, what becomes of each, and the kinds that find no place.
+/// The spec, its slips, the result of each, and the kinds that fit no place.
 struct Corpus {
     spec: Spec,
     slips: Vec<Slip>,
@@ -112,7 +112,7 @@ fn hash(text: &str) -> u64 {
     })
 }
 
-/// The slips, and the kinds for which the spec has no place.
+/// Returns the slips, and the kinds that fit no place of the spec.
 fn slips(spec: &Spec) -> (Vec<Slip>, Vec<&'static str>) {
     let (mut slips, mut without) = (Vec::new(), Vec::new());
     let mut known = HashSet::new();
@@ -270,7 +270,7 @@ fn a_slip_is_one_fault_where_it_is() {
     }
 }
 
-/// Two slips far apart are two faults: what one of them hides is not what the other one says.
+/// Two slips that are far apart cause two errors. Neither hides the other.
 #[test]
 #[ignore = "takes long"]
 fn two_slips_are_two_faults() {
@@ -289,7 +289,7 @@ fn two_slips_are_two_faults() {
     for step in 1..alone.len() {
         for (first, second) in alone.iter().zip(alone.iter().cycle().skip(step)) {
             let is_taken = pairs.len() == PAIRS || !first.change.is_apart(&second.change, APART);
-            // Half of them in one file.
+            // Half of the pairs are in one file.
             let wanted = pairs.len() % 2 == 0;
             if !is_taken && first.change.shares_file(&second.change) == wanted {
                 pairs.push((*first, *second));

@@ -1,4 +1,4 @@
-//! A spec as the makers see it: its files as text, and every key and item of them with its place.
+//! A spec as the makers see it: the text of its files, and the place of every key and item.
 
 use fc_spec::diagnostic::Faults;
 use fc_spec::source::{FileId, Sources};
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::ops::{Deref, Range};
 use std::path::Path;
 
-/// How a value is written.
+/// The notation of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     Nothing,
@@ -21,33 +21,33 @@ pub enum Form {
 /// A key with its value, or an item of a list, which has an empty key.
 #[derive(Debug)]
 pub struct Place {
-    /// Its file's place among the files.
+    /// Index of its file.
     pub file: usize,
-    /// The keys that lead to it, its own included; items are `-`.
+    /// The keys that lead to it, including its key. Items are `-`.
     pub path: Vec<String>,
-    /// Bytes of its key.
+    /// Byte range of its key.
     pub key: Range<usize>,
-    /// Bytes of its value.
+    /// Byte range of its value.
     pub value: Range<usize>,
-    /// How the value is written.
+    /// Notation of the value.
     pub form: Form,
-    /// Whether it stands in brackets.
+    /// `true` if it is inside brackets.
     pub flow: bool,
-    /// The place that it stands in.
+    /// Index of the place that contains it.
     pub parent: Option<usize>,
 }
 
-/// Files and their places.
+/// The files of a spec and their places.
 pub struct Spec {
-    /// Path and text, in the order of the paths.
+    /// Path and text, sorted by path.
     pub files: Vec<(String, String)>,
     pub places: Vec<Place>,
-    /// What stands in each place, and what stands in none.
+    /// Indices of the places directly inside each place. `None` has those at the top level.
     inside: HashMap<Option<usize>, Vec<usize>>,
 }
 
 impl Spec {
-    /// The `*.yaml` of a folder and of its `commands`.
+    /// Reads the `*.yaml` files of a folder and of its `commands`.
     pub fn read(folder: &Path) -> Self {
         let mut files = Vec::new();
         for (below, prefix) in [("", "spec/"), ("commands", "spec/commands/")] {
@@ -82,7 +82,7 @@ impl Spec {
         }
     }
 
-    /// What stands in a place, or in none.
+    /// Returns the places directly inside a place, or those at the top level.
     fn inside(&self, parent: Option<usize>) -> impl Iterator<Item = At<'_>> {
         let inside = self.inside.get(&parent).into_iter().flatten();
         inside.map(|index| self.at(*index))
@@ -96,7 +96,7 @@ impl Spec {
         &self.files[file].1
     }
 
-    /// Every place.
+    /// Returns every place.
     pub fn each(&self) -> impl Iterator<Item = At<'_>> {
         (0..self.places.len()).map(|index| self.at(index))
     }
@@ -152,7 +152,7 @@ fn walk(
     }
 }
 
-/// A place in its spec.
+/// A place together with its spec.
 #[derive(Clone, Copy)]
 pub struct At<'s> {
     pub spec: &'s Spec,
@@ -232,14 +232,14 @@ const WORDS: &[&str] = &[
     "survives_restart",
 ];
 
-/// Keys below which there is data and not the language.
+/// Keys with data below them, where no key is one of the language.
 const DATA: &[&str] = &["example", "rows", "when", "unless"];
 
-/// The keys that make a field's long form.
+/// The keys that mark the long form of a field.
 const FORMS: &[&str] = &["type", "fields", "items", "one_of"];
 
 impl<'s> At<'s> {
-    /// The text of its file.
+    /// Returns the text of its file.
     pub fn whole(self) -> &'s str {
         self.spec.text(self.place().file)
     }
@@ -252,7 +252,7 @@ impl<'s> At<'s> {
         &self.whole()[self.place().key.clone()]
     }
 
-    /// Its value as it is written.
+    /// Returns its value as written.
     pub fn written(self) -> &'s str {
         &self.whole()[self.place().value.clone()]
     }
@@ -275,19 +275,19 @@ impl<'s> At<'s> {
         inside.filter(move |other| other.file == file)
     }
 
-    /// The sibling before it.
+    /// Returns the sibling before it.
     pub fn before(self) -> Option<At<'s>> {
         self.siblings()
             .filter(|other| other.index < self.index)
             .last()
     }
 
-    /// The sibling behind it.
+    /// Returns the sibling after it.
     pub fn behind(self) -> Option<At<'s>> {
         self.siblings().find(|other| other.index > self.index)
     }
 
-    /// Whether its children are fields under their wire keys.
+    /// Returns `true` if its children are fields under their wire keys.
     pub fn is_body(self) -> bool {
         let Some(parent) = self.parent().filter(|_| self.form == Form::Map) else {
             return false;
@@ -300,12 +300,12 @@ impl<'s> At<'s> {
         }
     }
 
-    /// Whether its key is one of the language.
+    /// Returns `true` if its key is one of the language.
     pub fn is_word(self) -> bool {
         WORDS.contains(&self.name()) && !self.is_data() && !self.parent().is_some_and(At::is_body)
     }
 
-    /// Whether what it stands in says something in no word of the language.
+    /// Returns `true` if it is inside data, where no key is one of the language.
     fn is_data(self) -> bool {
         let above = &self.path[..self.path.len() - 1];
         let last = above.last().map(String::as_str);
@@ -313,17 +313,17 @@ impl<'s> At<'s> {
             || (last == Some("about") && above.iter().any(|key| key == "answers"))
     }
 
-    /// Whether it is this key of the language.
+    /// Returns `true` if it is this key of the language.
     pub fn is(self, word: &str) -> bool {
         self.name() == word && self.is_word()
     }
 
-    /// Whether its value is a scalar on one line.
+    /// Returns `true` if its value is a scalar on one line.
     pub fn is_scalar(self) -> bool {
         matches!(self.form, Form::Plain | Form::Quoted) && !self.written().contains('\n')
     }
 
-    /// Whether it stands first on a line of its own.
+    /// Returns `true` if its key begins a line.
     pub fn is_row(self) -> bool {
         let line = self.line();
         !self.flow
@@ -331,33 +331,33 @@ impl<'s> At<'s> {
             && self.whole()[line.start..self.key.start].trim().is_empty()
     }
 
-    /// Blanks before it.
+    /// Returns the number of blanks before its key.
     pub fn indent(self) -> usize {
         self.key.start - self.line().start
     }
 
-    /// The line on which it begins, without its end.
+    /// Returns the line on which it begins, without the line end.
     pub fn line(self) -> Range<usize> {
         line_of(self.whole(), self.key.start)
     }
 
-    /// All of its lines, with the end of the last.
+    /// Returns all of its lines, with the last line end.
     pub fn lines(self) -> Range<usize> {
         let last = line_of(self.whole(), self.value.end.max(self.key.end));
         self.line().start..(last.end + 1).min(self.whole().len())
     }
 
-    /// Whether it is an entry of this section.
+    /// Returns `true` if it is an entry of this section.
     pub fn is_in(self, section: &str) -> bool {
         self.path.len() == 2 && self.path[0] == section
     }
 
-    /// Whether it is a command or a report.
+    /// Returns `true` if it is a command or a report.
     pub fn is_operation(self) -> bool {
         self.is_in("commands") || self.is_in("reports")
     }
 
-    /// Whether it is the scalar that gives the type of a field, in the long form or the short one.
+    /// Returns `true` if it is the scalar with the type of a field, in the long or the short form.
     pub fn is_type(self) -> bool {
         let long = self.is("type")
             && self
@@ -367,7 +367,7 @@ impl<'s> At<'s> {
     }
 }
 
-/// The line that holds a byte, without its end.
+/// Returns the line that holds a byte, without the line end.
 pub fn line_of(text: &str, at: usize) -> Range<usize> {
     let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
     let end = text[at..].find('\n').map_or(text.len(), |end| at + end);

@@ -1,4 +1,4 @@
-//! Blocks in the wrong place, or without what begins them.
+//! Makers of blocks in the wrong place, or without their first line.
 
 use super::{Maker, maker};
 use crate::slips_made::change::Change;
@@ -117,14 +117,14 @@ pub const MAKERS: &[Maker] = &[
             .children()
             .next()
             .filter(|_| at.is("response") && at.is_row() && at.path[0] == "commands")?;
-        // Behind a request what it holds would be more of that.
+        // After a `request` block, the keys would become part of the request.
         at.before().filter(|before| before.form != Form::Map)?;
         let line = at.line();
         Some(Change::new(at.file, line.start..line.end + 1, "").or(first))
     }),
 ];
 
-/// The entry under another name as the first of a section, with another code.
+/// Inserts a copy of the entry at the start of a section, with another name and without its code.
 fn paste(at: At<'_>, name: &str, section: At<'_>) -> Option<Change> {
     let first = section.children().next()?;
     let text = &at.whole()[at.lines()];
@@ -143,7 +143,7 @@ fn at_section(section: At<'_>, first: At<'_>, text: String) -> Change {
     section.insert(first.line().start, text)
 }
 
-/// The line of a top key taken out.
+/// Removes the line of a top-level key.
 fn header(at: At<'_>, name: &str) -> Option<Change> {
     let first = at
         .children()

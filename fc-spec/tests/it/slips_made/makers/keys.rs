@@ -1,4 +1,4 @@
-//! Keys that are misspelt, wrong, repeated or gone.
+//! Makers of keys that are misspelt, wrong, repeated or missing.
 
 use super::{Maker, capital, maker, swapped};
 use crate::slips_made::change::Change;
@@ -84,7 +84,7 @@ pub const MAKERS: &[Maker] = &[
     }),
 ];
 
-/// The place written a second time, behind itself.
+/// Repeats the entry after itself.
 fn twice(at: At<'_>) -> Option<Change> {
     let lines = at.lines();
     let text = &at.whole()[lines.clone()];
@@ -92,15 +92,15 @@ fn twice(at: At<'_>) -> Option<Change> {
         .then(|| at.insert(lines.end, text).on_its_lines())
 }
 
-/// A required key taken out; what it stands in is to blame, or where it stood.
+/// Removes a required key. The error may be at its parent, or where the key was.
 fn missing(at: At<'_>, key: &str, flow: bool) -> Option<Change> {
     let parent = at.parent().filter(|_| at.is(key) && at.flow == flow)?;
     let optional = ["about", "note", "aliases", "deprecated"];
     let is_optional = optional.contains(&parent.name()) && key != "zh" && key != "en";
     let is_scalar = at.form != Form::List && !is_optional && parent.name() != "aliases";
-    // What holds `data` alone may go without a text.
+    // The texts of a body's `data` have a default.
     let may_be_bare = parent.name() == "data" && parent.parent().is_some_and(At::is_body);
-    // A first key of an item has the dash on its line.
+    // The first key of an item shares its line with the dash.
     let movable = at.flow || at.is_row();
     (is_scalar && !may_be_bare && movable).then(|| at.removed().or(parent).or_value(parent))
 }

@@ -1,4 +1,4 @@
-//! Lines and blocks at the wrong depth, dashes.
+//! Makers of lines and blocks at the wrong depth, and of wrong dashes.
 
 use super::{Maker, maker};
 use crate::slips_made::change::Change;
@@ -15,7 +15,7 @@ pub const MAKERS: &[Maker] = &[
         line(at).then(|| at.shifted(2)).flatten()
     }),
     maker("a line a level higher", |at| {
-        // Where its key has no meaning a level higher.
+        // These keys have no meaning a level higher.
         (line(at) && matches!(at.name(), "effect" | "code" | "as" | "enum" | "state"))
             .then(|| at.shifted(-2))
             .flatten()
@@ -99,7 +99,7 @@ pub const MAKERS: &[Maker] = &[
             .children()
             .next()
             .is_some_and(|first| first.index == at.index);
-        // The keys behind the dash become a second item.
+        // The keys after the dash become a second item.
         (!is_first && at.is_row()).then(|| {
             let dash = at.key.start - 2..at.key.start - 1;
             Change::new(at.file, dash, "-")
@@ -115,7 +115,7 @@ pub const MAKERS: &[Maker] = &[
     maker("a text of many lines without its `|`", |at| {
         let is_block = at.form == Form::Block && at.written().starts_with('|');
         let text = at.written().to_owned();
-        // Most texts are one text all the same; one with a colon is not.
+        // Without `|`, most texts are still one string. A text with a colon is not.
         (is_block && text.contains(": ")).then(|| {
             Change::new(at.file, at.value.start..at.value.start + 1, "")
                 .or(at)
@@ -139,12 +139,12 @@ pub const MAKERS: &[Maker] = &[
     }),
 ];
 
-/// A key of the language with a scalar on a line of its own.
+/// Returns `true` for a key of the language that begins a line and has a scalar.
 fn line(at: At<'_>) -> bool {
     at.is_word() && at.is_row() && at.is_scalar() && at.path.len() > 2
 }
 
-/// A key of the language with lines below it.
+/// Returns `true` for a key of the language that has a block below it.
 fn block(at: At<'_>) -> bool {
     at.is_word()
         && at.is_row()
@@ -153,7 +153,7 @@ fn block(at: At<'_>) -> bool {
         && at.written().contains('\n')
 }
 
-/// The byte of the dash before an item that is a mapping.
+/// Returns the position of the dash before an item that is a mapping.
 fn dash(at: At<'_>) -> Option<usize> {
     let is_item = at.name().is_empty() && !at.flow && at.form == Form::Map;
     at.children().nth(1).filter(|_| is_item)?;

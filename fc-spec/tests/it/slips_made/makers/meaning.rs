@@ -1,4 +1,4 @@
-//! What is well formed and wrong.
+//! Makers of text that is well formed but wrong.
 
 use super::{Maker, maker, swapped};
 use crate::slips_made::place::{At, Form};
@@ -85,7 +85,7 @@ pub const MAKERS: &[Maker] = &[
             .parent()
             .filter(|value| at.is("name") && self::value(*value))?;
         let before = value.before()?.child("name")?;
-        // What leads to it would lead nowhere.
+        // A `then` with the old name would be a second error.
         let is_led_to = value
             .parent()?
             .children()
@@ -119,7 +119,7 @@ pub const MAKERS: &[Maker] = &[
             .spec
             .each()
             .filter(|other| other.parent().is_some_and(|ids| ids.is("ids")));
-        // Else the conflict has no answer, which is another fault.
+        // If this is its only answer, the conflict has none, which is another error.
         (others
             .filter(|other| other.written() == at.written())
             .count()
@@ -171,7 +171,7 @@ pub const MAKERS: &[Maker] = &[
     }),
 ];
 
-/// A value of an enum.
+/// Returns `true` for a value of an enum.
 fn value(at: At<'_>) -> bool {
     at.parent().is_some_and(|values| values.is("values"))
 }

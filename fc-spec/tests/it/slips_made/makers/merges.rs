@@ -1,4 +1,4 @@
-//! Merges gone wrong, and YAML that the spec does without.
+//! Makers of failed merges, and of YAML features that the spec language does not have.
 
 use super::{Maker, maker};
 use crate::slips_made::change::Change;
@@ -108,7 +108,7 @@ pub const MAKERS: &[Maker] = &[
     }),
 ];
 
-/// A line of an operation with something before and something behind it.
+/// Puts text before and after a line of an operation.
 fn around(at: At<'_>, before: &str, behind: impl Fn(&str) -> String) -> Option<Change> {
     let row = at.is("effect") && at.is_row() && at.is_scalar();
     row.then(|| {

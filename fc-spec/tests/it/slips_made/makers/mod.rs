@@ -1,5 +1,5 @@
-//! The makers: one small function for each kind of slip, which looks at a place of a spec and, where it has the right
-//! shape, says how the slip is made there.
+//! The makers: one small function for each kind of slip. A maker looks at a place in a spec. If the place has the right
+//! shape, the maker returns the change that makes the slip there.
 
 mod blocks;
 mod keys;
@@ -14,7 +14,7 @@ mod values;
 use super::change::Change;
 use super::place::At;
 
-/// A kind of slip.
+/// A kind of slip, and the function that makes it.
 pub struct Maker {
     pub kind: &'static str,
     pub make: fn(At<'_>) -> Option<Change>,
@@ -24,7 +24,7 @@ const fn maker(kind: &'static str, make: fn(At<'_>) -> Option<Change>) -> Maker 
     Maker { kind, make }
 }
 
-/// All of them.
+/// Returns all makers.
 pub fn all() -> impl Iterator<Item = &'static Maker> {
     [
         keys::MAKERS,
@@ -41,7 +41,7 @@ pub fn all() -> impl Iterator<Item = &'static Maker> {
     .flatten()
 }
 
-/// A word with its second and third letter in each other's place.
+/// Swaps the second and the third letter of a word. Returns `None` if that changes nothing.
 fn swapped(word: &str) -> Option<String> {
     let mut letters: Vec<char> = word.chars().collect();
     let (first, second) = (*letters.get(1)?, *letters.get(2)?);
@@ -52,7 +52,7 @@ fn swapped(word: &str) -> Option<String> {
     Some(letters.into_iter().collect())
 }
 
-/// A word with a capital letter at its start.
+/// Capitalizes the first letter of a word.
 fn capital(word: &str) -> Option<String> {
     let first = word.chars().next().filter(char::is_ascii_lowercase)?;
     Some(first.to_ascii_uppercase().to_string() + &word[1..])

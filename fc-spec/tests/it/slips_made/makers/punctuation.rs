@@ -1,4 +1,4 @@
-//! Punctuation that is missing, doubled, full-width or invisible.
+//! Makers of punctuation that is missing, doubled, full-width or invisible.
 
 use super::{Maker, maker};
 use crate::slips_made::change::Change;
@@ -153,7 +153,7 @@ pub const MAKERS: &[Maker] = &[
     }),
 ];
 
-/// A key of the language on a line of its own.
+/// Returns `true` for a key of the language that begins a line.
 fn row(at: At<'_>) -> bool {
     at.is_word() && at.is_row() && at.path.len() > 1
 }
@@ -177,7 +177,7 @@ fn square(at: At<'_>) -> bool {
     !at.flow && at.written().starts_with('[') && !at.written().contains('\n')
 }
 
-/// Other marks at both ends of the value.
+/// Replaces the marks at both ends of the value.
 fn brackets(at: At<'_>, open: &str, close: &str) -> Change {
     let first = at.value.start..at.value.start + 1;
     Change::new(at.file, first, open).and(at.value.end - 1..at.value.end, close)
@@ -185,7 +185,7 @@ fn brackets(at: At<'_>, open: &str, close: &str) -> Change {
 
 fn quotes(at: At<'_>, open: &str, close: &str) -> Option<Change> {
     let is_quoted = at.form == Form::Quoted && at.written().starts_with('"') && at.is_scalar();
-    // Within quotes of another kind these have no meaning.
+    // An apostrophe or a backslash has another meaning in other quotes.
     let is_simple = is_quoted && at.is_word() && !at.written().contains(['\'', '\\']);
     is_simple.then(|| brackets(at, open, close).or_value(at))
 }

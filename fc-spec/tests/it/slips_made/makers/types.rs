@@ -1,4 +1,4 @@
-//! Types that are misspelt, foreign or missing.
+//! Makers of types that are misspelt, foreign or missing.
 
 use super::{Maker, maker, swapped};
 use crate::slips_made::change::Change;
@@ -38,7 +38,7 @@ pub const MAKERS: &[Maker] = &[
             .spec
             .each()
             .filter(|other| declared(*other) == Some(base));
-        // Else it is not used any longer, which is a fault of its own.
+        // An unused type is another error, so one use must remain.
         (others.count() > 1).then(|| at.set(at.written().replacen(base, "NoSuchThing", 1)))
     }),
     maker("`T[]` for a list", |at| {
@@ -77,7 +77,7 @@ pub const MAKERS: &[Maker] = &[
     }),
 ];
 
-/// The name in a type: that of `string?` is `string`.
+/// Returns the name in a type, such as `string` in `string?`.
 fn base(at: At<'_>) -> Option<&str> {
     let name = at.written().trim_matches(['"', '?', '[', ']']);
     (at.is_type() && name.chars().all(|c| c.is_ascii_alphanumeric())).then_some(name)
@@ -88,12 +88,12 @@ fn foreign(at: At<'_>, new: &str) -> Option<Change> {
     Some(at.set(at.written().replacen(base, new, 1)))
 }
 
-/// The declared type that a field is of.
+/// Returns the name of the declared type of a field.
 fn declared(at: At<'_>) -> Option<&str> {
     base(at).filter(|base| base.starts_with(|first: char| first.is_ascii_uppercase()))
 }
 
-/// The places that name a declared type.
+/// Returns the places that name a declared type.
 fn users(at: At<'_>) -> Option<Vec<At<'_>>> {
     let name = at.is_in("types").then(|| at.name())?;
     let users: Vec<_> = at

@@ -1,4 +1,4 @@
-//! Edits that were not finished.
+//! Makers of unfinished edits.
 
 use super::{Maker, maker};
 use crate::slips_made::change::Change;

@@ -1,4 +1,4 @@
-//! Values that are misspelt or of another kind.
+//! Makers of values that are misspelt or of another kind.
 
 use super::{Maker, maker, swapped};
 use crate::slips_made::change::Change;
@@ -136,7 +136,7 @@ fn date(at: At<'_>, make: impl Fn(&str) -> String) -> Option<Change> {
 
 fn id(at: At<'_>, make: impl Fn(&str) -> String) -> Option<Change> {
     at.parent().filter(|ids| ids.is("ids"))?;
-    // It is answered no longer, which is seen where it is declared.
+    // The conflict loses its answer, which is an error at its declaration.
     let conflict = at
         .spec
         .each()
@@ -148,7 +148,7 @@ fn truth(at: At<'_>, new: &str) -> Option<Change> {
     (at.written() == "true" && at.is_word()).then(|| at.set(new))
 }
 
-/// An example of a field of this type.
+/// Returns `Some` if the place is the example of a field of this type.
 fn example(at: At<'_>, ty: &str) -> Option<()> {
     let field = at.parent().filter(|_| at.is("example") && at.is_scalar())?;
     let is_typed = field
