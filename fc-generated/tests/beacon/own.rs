@@ -1,5 +1,5 @@
-//! What the beacon does otherwise: without a result code, a response says that all went well, and what did not
-//! is not answered. `tests/it/other_protocols.rs` runs this in a crate made from it.
+//! Tests the beacon's protocol, which has no result code: any response means success, and a failure gets no response.
+//! `tests/it/other_protocols.rs` runs this in a crate that is generated from its spec.
 
 #![allow(missing_docs, reason = "tests")]
 
@@ -44,7 +44,7 @@ async fn serve() -> (SocketAddr, ServerHandle<Beacon>, JoinHandle<()>) {
     (address, handle, tokio::spawn(server.run()))
 }
 
-/// One side of a connection, frame by frame.
+/// One side of a connection, which sends and receives frames.
 struct Raw {
     socket: TcpStream,
     decoder: Decoder<Beacon>,
@@ -65,7 +65,7 @@ impl Raw {
         self.socket.write_all(&frame).await.unwrap();
     }
 
-    /// The next frame; `None` at the end.
+    /// Returns the next frame, or `None` at the end.
     async fn next(&mut self) -> Option<(FrameId, String)> {
         loop {
             if let Some(frame) = self.decoder.next().unwrap() {
@@ -98,10 +98,10 @@ async fn refused_request_gets_no_response() {
     let command = |code, id| asks(Beacon::COMMAND, code, id);
     app.send(command(2, 1), r#"{"times":6}"#).await; // Refused by the handler.
     app.send(command(2, 2), r#"{"times":0}"#).await; // Out of range.
-    app.send(command(2, 3), r#"{"times":"#).await; // No JSON.
+    app.send(command(2, 3), r#"{"times":"#).await; // Not JSON.
     app.send(command(1, 4), "{}").await; // Not implemented.
-    app.send(command(99, 5), "{}").await; // Unknown.
-    app.send(asks(9, 2, 6), r#"{"times":1}"#).await; // Of an unknown kind.
+    app.send(command(99, 5), "{}").await; // Unknown code.
+    app.send(asks(9, 2, 6), r#"{"times":1}"#).await; // Unknown kind.
     app.send(command(2, 7), r#"{"times":1}"#).await;
     app.socket.shutdown().await.unwrap();
     let answer = app.next().await;
@@ -153,7 +153,7 @@ async fn any_answer_to_a_report_acknowledges_it() {
     serving.await.unwrap();
 }
 
-/// Without a digest, reports with the same id are told apart by their data.
+/// Without a digest, the app distinguishes reports with the same id by their data.
 #[tokio::test]
 async fn app_acknowledges_and_distinguishes_reports() {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.unwrap();
@@ -171,7 +171,7 @@ async fn app_acknowledges_and_distinguishes_reports() {
     let acknowledged = robot.next().await;
     assert_eq!(acknowledged, Some((seen(5).answer(), "{}".to_owned())));
 
-    // A robot that restarts begins its ids again.
+    // A restarted robot begins its ids again.
     drop(robot);
     let mut robot = Raw::new(listener.accept().await.unwrap().0);
     for (id, who) in [(5, "bob"), (5, "bob"), (6, "eve")] {

@@ -1,4 +1,4 @@
-//! An app that makes messages and takes them apart, written before they had more keys.
+//! An app that builds messages and takes them apart, written before they had more keys.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -24,7 +24,7 @@ fn request() -> SetLevelRequest {
     SetLevelRequest::new(data)
 }
 
-/// The phase a lamp is put into, and the level it ends at.
+/// Sets the level. Returns `true` if the response has data without a goal.
 async fn light(client: &Client) -> Result<bool, CallError> {
     let response = client.set_level(&request()).await?;
     Ok(response.data.is_some_and(|data| data.goal.is_none()))

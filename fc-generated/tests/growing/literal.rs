@@ -1,4 +1,4 @@
-//! A message written as a literal: a key that is added would break it, so it does not compile now.
+//! A message as a struct literal. A new key would break it, so it does not compile in the first place.
 
 #![allow(missing_docs, reason = "a test")]
 

@@ -1,5 +1,5 @@
-//! Adding a command is the few lines of YAML that the readme shows, and nothing else: everything that
-//! follows from them appears with them and disappears with them.
+//! The YAML lines that the README shows are enough to add a command. All generated parts of the command appear and
+//! disappear with them.
 
 use crate::support;
 use fc_codegen::emit::generate;
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// What the readme's example calls its command.
+/// The name of the command in the README's example.
 const NAME: &str = "get_battery";
 
 #[test]
@@ -25,7 +25,7 @@ fn readme_steps_add_a_command_and_leave_no_trace() {
     let root = project.path();
     support::copy(&support::root().join("spec"), &root.join("spec"));
     let model = support::model(root);
-    // The owner may have done as the readme says.
+    // The spec may already have the command of the README.
     let code = free_code(&model, code_of(&example));
     let name = free_name(&model);
     let example = example
@@ -117,7 +117,7 @@ fn readme_steps_add_a_command_and_leave_no_trace() {
     assert_eq!(changed(&before, &after), Vec::<&String>::new());
 }
 
-/// The pictures of an error in the readmes: their command, with a code that is in use.
+/// The pictures in the READMEs show the error of their command with a code that is in use.
 #[test]
 fn the_pictures_show_the_error_of_a_code_in_use() {
     let project = tempfile::tempdir().unwrap();
@@ -144,7 +144,7 @@ fn the_pictures_show_the_error_of_a_code_in_use() {
         let drawn = lines(&fs::read_to_string(path).unwrap());
         let (typed, drawn) = drawn.split_first().expect("a command");
         assert_eq!(typed, "$ fcproto check", "{picture}");
-        // An addition to the spec moves the lines.
+        // Additions to the spec move lines, so their numbers are not compared.
         let drawn: Vec<&str> = drawn.iter().map(|line| placeless(line)).collect();
         assert_eq!(
             drawn,
@@ -154,7 +154,7 @@ fn the_pictures_show_the_error_of_a_code_in_use() {
     }
 }
 
-/// The lines of text in a picture of a terminal.
+/// Returns the lines of text in a picture of a terminal.
 fn lines(picture: &str) -> Vec<String> {
     let lines = picture.lines().filter(|line| line.starts_with("<text "));
     let text = lines.map(|line| {
@@ -169,13 +169,13 @@ fn lines(picture: &str) -> Vec<String> {
     .collect()
 }
 
-/// A line of an error without its line number and the place in a file.
+/// Returns a line of an error without its line number and its place in a file.
 fn placeless(line: &str) -> &str {
     let line = line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit());
     line.split_once(".yaml:").map_or(line, |(file, _)| file)
 }
 
-/// The parts of the generated Rust that the readmes show in their `rs` blocks, squeezed.
+/// Returns the parts of the generated Rust that the READMEs show in their `rs` blocks, squeezed.
 fn printed() -> Vec<(&'static str, String)> {
     let mut printed = Vec::new();
     for readme in ["README.md", "README.zh-CN.md"] {
@@ -190,7 +190,7 @@ fn printed() -> Vec<(&'static str, String)> {
     printed
 }
 
-/// Rust without comments and spaces, and without the modules before names.
+/// Returns Rust without comments, spaces, and the modules before names.
 fn squeezed(text: &str) -> String {
     let lines = text.lines();
     let lines = lines.filter(|line| !line.trim_start().starts_with("//"));
@@ -200,7 +200,7 @@ fn squeezed(text: &str) -> String {
     paths.iter().fold(text, |text, path| text.replace(path, ""))
 }
 
-/// The command that a readme adds: its one block of YAML.
+/// Returns the command that a README adds: its only block of YAML.
 fn example(readme: &str) -> String {
     let text = fs::read_to_string(support::root().join(readme)).unwrap();
     let mut blocks = text.split("```yaml\n").skip(1);
@@ -220,7 +220,7 @@ fn spelled(code: u16) -> String {
     format!("0x{code:04X}")
 }
 
-/// The code of the example, or the next in the range of new commands that nobody has.
+/// Returns the code of the example if it is free, otherwise the first free code in the range of new commands.
 fn free_code(model: &Model, wish: u16) -> u16 {
     let mut ranges = model
         .ranges
@@ -240,7 +240,7 @@ fn free_code(model: &Model, wish: u16) -> u16 {
         .expect("the range is not full")
 }
 
-/// The name of the example, or one like it that nobody has.
+/// Returns the name of the example, with a suffix if it is in use.
 fn free_name(model: &Model) -> String {
     let mut name = NAME.to_owned();
     while model.operation(&name).is_some() {

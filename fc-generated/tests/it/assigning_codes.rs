@@ -1,6 +1,5 @@
-//! An operation that waits for its code is complete but for the code: with one written down, its
-//! stubs work. This gives a code to every such operation in a copy of the spec, makes a copy of the
-//! crate from it and runs the round trips there.
+//! The stubs of an operation without a code work as soon as it has one. The test assigns a code to every such operation
+//! in a copy of the spec. It generates a crate from the copy and runs the round trips there.
 
 use crate::support;
 use crate::support::nested;
@@ -42,7 +41,7 @@ fn operations_work_as_soon_as_they_have_a_code() {
     }
 }
 
-/// Writes a free code wherever the spec says `unassigned`; answers which operations got one.
+/// Replaces each `unassigned` with a free code. Returns the commands and reports that got one.
 fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
     let mut taken: BTreeSet<u16> = model
         .operations
@@ -78,7 +77,7 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
         let line = own.next().expect("the operation says that it has no code");
         let with_code = format!("code: {{ value: 0x{code:04X}, state: inferred }}");
         *line = line.replace("code: unassigned", &with_code);
-        // A question about the code holds it to what it is, so that the two change together.
+        // A question about the code repeats its state, so both change together.
         for line in own_lines(&mut lines, operation.location.line) {
             *line = line.replace("code: open", "code: inferred");
         }
@@ -90,7 +89,7 @@ fn assign_codes(model: &Model, project: &Path) -> Vec<(Kind, String)> {
     assigned
 }
 
-/// The lines of the operation that begins on this line, up to the next thing that is as far to the left.
+/// Returns the lines of the operation that begins on this line, up to the next line with the same or less indentation.
 fn own_lines(lines: &mut [String], first: usize) -> impl Iterator<Item = &mut String> {
     let depth = |line: &str| line.len() - line.trim_start().len();
     let own = lines.get(first - 1).map_or(0, |line| depth(line));

@@ -1,4 +1,4 @@
-//! The app's stub without `async`: every command and every report, with one `use` on either side.
+//! Tests the app's stub without `async` with every command and every report.
 
 #![allow(
     clippy::panic,
@@ -15,7 +15,7 @@ use fc_generated::{ExampleRobot, for_each_command, for_each_report};
 use std::net::Ipv4Addr;
 use std::time::Duration;
 
-/// Long enough that only what hangs takes it.
+/// A timeout that only a hanging test reaches.
 const LONG: Duration = Duration::from_secs(60);
 
 macro_rules! call_all {

@@ -1,4 +1,4 @@
-//! The two example programs against each other, and the app against a mock.
+//! Runs the example robot and the example app against each other, and the app against a mock.
 
 use crate::support::programs::{Robot, examples};
 use fc_generated::descriptors::OPERATIONS;
@@ -25,7 +25,7 @@ fn the_app_tours_the_robot_and_the_robot_ends_with_it() {
         .iter()
         .filter(|operation| operation.kind == OperationKind::Report);
     for report in reports.filter(|report| report.code.is_some()) {
-        // Which number the connection has depends on which port is accepted first.
+        // The number of the connection depends on which port accepts first.
         let start = format!("{} to #", report.name);
         let acknowledged = rest
             .lines()
@@ -39,9 +39,9 @@ fn the_app_tours_a_mock_of_the_spec() {
     let [app] = examples(["app"], "");
     let settings = Settings {
         pace: Duration::from_millis(1),
-        // The example robot, too, sends its picture after this command.
+        // The example robot also sends its picture after this command.
         stream_after: vec!["get_map_image".to_owned()],
-        // The app calls everything once, in the order of the spec.
+        // The app calls every command once, in the order of the spec, so preconditions may not hold.
         ignores_preconditions: true,
         ..Settings::default()
     };
@@ -75,13 +75,13 @@ fn an_app_that_breaks_a_scenario_is_caught() {
         .spawn()
         .unwrap();
     let verdict = mock.verdict();
-    // It may still wait for the robot, which has ended.
+    // The app may still wait for the robot, which has ended.
     app.kill().unwrap();
     app.wait().unwrap();
     assert_eq!(verdict, Some(Verdict::Forbidden(forbidden)));
 }
 
-/// The model of the spec.
+/// Returns the model of the spec.
 fn spec() -> Model {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut faults = Faults::new();
@@ -103,7 +103,7 @@ fn tour(app: &Path, ports: [u16; 2]) {
         "{table}\n{}",
         String::from_utf8_lossy(&tour.stderr)
     );
-    // Of the data port the tour only shows the picture; a stream of the spec has no example.
+    // On the data port, the tour shows only the picture. Streams of the spec have no example.
     let toured = |operation: &&OperationInfo| {
         operation.code.is_some() && operation.kind != OperationKind::Stream
     };

@@ -1,4 +1,4 @@
-//! A command of the spec followed over TCP by the generated stubs, through all that its states say.
+//! Follows a command of the spec over TCP with the generated stubs, through all of its states.
 
 use fc_generated::{
     AnyReport, Client, Fc, PartialRobot, RechargeError, RechargeProgress, RechargeStatus, Reporter,
@@ -49,14 +49,14 @@ async fn recharging_is_followed_to_its_failure() {
     let reporter = Reporter::new(handle.clone());
 
     let request = StartRechargeRequest::default();
-    // It can still be called and no more.
+    // A plain call still works.
     client.start_recharge(&request).await.unwrap();
     let mut others = client.reports();
     let mut following = client.start_recharge(&request).follow().await.unwrap();
     let mut second = client.start_recharge(&request).follow().await.unwrap();
     assert_eq!(following.answer(), &StartRechargeResponse::default());
 
-    // In the order of the spec, then back; nothing of it is said to be final.
+    // All states in the order of the spec, then two earlier ones. The spec declares none of them as final.
     let (fine, failed) = (RechargeError::Ok, RechargeError::Failed);
     let mut reports: Vec<_> = RechargeStatus::VALUES
         .iter()
@@ -80,8 +80,8 @@ async fn recharging_is_followed_to_its_failure() {
         assert_eq!(other, Some(Ok(AnyReport::RechargeProgress(report))));
     }
     assert_eq!(following.recv().await, None);
-    // From idle, docking is not what normally follows; that the robot leaves the dock breaks nothing that is said. Each
-    // who follows has counted it.
+    // Docking does not normally follow idle, and each of the two followers counts that. The return to idle breaks no
+    // rule of the spec.
     let counters = client.connection().counters();
     assert_eq!(counters.reports_out_of_order, 2);
 

@@ -1,4 +1,4 @@
-//! The committed output is what the committed spec gives.
+//! The committed output matches the committed spec.
 
 use crate::support;
 use fc_codegen::emit::generate;
@@ -14,7 +14,7 @@ fn committed_files_match_the_spec() {
         &[],
     )
     .unwrap();
-    // A few tell enough; the command shows them all.
+    // Five diffs are enough here. The command shows all of them.
     let diffs: String = plan
         .diffs()
         .into_iter()

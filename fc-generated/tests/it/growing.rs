@@ -1,15 +1,14 @@
-//! A protocol grows: what was written against it before compiles unchanged, but for the robot that says
-//! it is complete.
+//! A protocol grows. Code that was written before compiles unchanged, except a robot that implements all commands.
 
 use crate::support;
 use crate::support::nested;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What is added to a file of a spec: the lines it stands behind, and the lines.
+/// An addition to a spec: the file, the lines before the addition, and the new lines.
 type Added = (&'static str, &'static str, &'static str);
 
-/// A command.
+/// A new command.
 const COMMAND: &[Added] = &[(
     "commands/lamp.yaml",
     "commands:",
@@ -22,8 +21,7 @@ const COMMAND: &[Added] = &[(
 ",
 )];
 
-/// A key that nobody has to send, in front of the others: in a request, a response, a report and a type
-/// that a list holds.
+/// Optional keys, each before the existing ones: in a request, a response, a report, and a type that a list holds.
 const KEYS: &[Added] = &[
     (
         "commands/lamp.yaml",
@@ -47,7 +45,7 @@ const KEYS: &[Added] = &[
     ),
 ];
 
-/// A copy of the protocol, and a crate made from it with tests that were written against it.
+/// Copies the protocol and generates a crate with these tests from it. Returns the folder of both.
 fn crate_before(name: &str, tests: &[&str]) -> PathBuf {
     let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let spec = project.join("spec");
@@ -67,7 +65,7 @@ fn generate(project: &Path, tests: &[&str]) {
     nested::write_crate(project, &support::model(project), &tests);
 }
 
-/// Adds to the spec.
+/// Inserts additions into the spec.
 fn grow(project: &Path, added: &[Added]) {
     for (file, behind, lines) in added {
         let file = project.join("spec").join(file);
@@ -106,7 +104,7 @@ fn new_optional_key_breaks_no_peer() {
     ];
     let project = crate_before("growing_keys", &tests);
     nested::cargo(&project, &run);
-    // What a new key would break cannot be written in the first place.
+    // A new key would break a struct literal, so the compiler refuses it from the start.
     let errors = nested::refused(&project, &["check", "--test", "literal"]);
     let refused = "cannot create non-exhaustive struct using struct expression";
     assert!(errors.contains(refused), "{errors}");

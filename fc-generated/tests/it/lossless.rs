@@ -1,8 +1,7 @@
-//! The lossless law: what a peer sends comes out again, whatever a later spec has added to it.
+//! The lossless law: reading and writing a message keeps everything that a peer sends, including keys of a later spec.
 //!
-//! For every message type of the spec, with arbitrary values of it, keys and enum values that the
-//! spec does not know included: reading and writing changes nothing, and doing it twice changes
-//! nothing more, not even a byte.
+//! The test generates arbitrary values of every message type, with unknown keys and enum values. Reading and writing
+//! one changes nothing, and a second pass changes not even a byte.
 
 use crate::support::arbitrary::{Arbitrary, Random};
 use crate::support::{self, TYPES, Type};
@@ -33,12 +32,12 @@ proptest! {
     }
 }
 
-/// What the spec says of a type, by its name.
+/// Returns the definition of a type of the spec, by its name.
 fn definition(name: &str) -> &'static fc_spec::model::TypeDef {
     MODEL.types.named(name).expect("it is of the spec")
 }
 
-/// Text of numbers that no Rust type keeps, whitespace and escapes.
+/// The text has numbers that no Rust type represents, white space, and escapes.
 #[test]
 fn the_value_of_an_unknown_key_keeps_its_text() {
     let samples = Samples::new(&MODEL);
@@ -72,7 +71,7 @@ fn a_report_of_an_unknown_code_is_kept() {
         id: 1,
         text: b"{ \"a\": 1.00 }".to_vec(),
     };
-    // What the variant is called depends on the names of the reports.
+    // The name of the variant depends on the names of the reports.
     let kept = format!("{:?}", AnyReport::from_raw(raw.clone()).unwrap());
     assert!(kept.ends_with(&format!("({raw:?})")), "{kept}");
 }
@@ -100,7 +99,7 @@ fn parse(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-/// Equal, but for how a number inside a string is spelt.
+/// Returns `true` if both are equal, except for the spelling of numbers in strings.
 fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::String(a), Value::String(b)) => {

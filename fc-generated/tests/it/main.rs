@@ -1,4 +1,5 @@
-//! The integration tests, as one program: a program per file would link the crate each time. `samples` is generated.
+//! All integration tests are one program, because a program per file would link the crate each time. Only `samples`,
+//! which is generated, is separate.
 
 #![allow(
     clippy::expect_used,

@@ -1,6 +1,6 @@
-//! The generator against a protocol as unlike the real one as the language allows (`odd/spec`), with
-//! names that mean something to Rust or to the generated code wherever names are free: what it makes
-//! compiles without a warning, its documentation too, and its stubs and samples work.
+//! Tests the generator with a protocol that differs from the real one as much as the language allows (`odd/spec`).
+//! Where names are free, it uses names with a meaning in Rust or in the generated code. The generated crate and its
+//! documentation compile without a warning, and its stubs and samples work.
 
 use crate::support;
 use crate::support::nested;

@@ -1,5 +1,5 @@
-//! What the guide on operations shows holds with the real tools: Prometheus reads the robot's metrics,
-//! the alerts are sound, and systemd takes the unit.
+//! Tests the files of the operations guide with the real tools. Prometheus reads the robot's metrics, the alerts are
+//! valid, and systemd accepts the unit.
 
 use crate::support::programs::{Robot, examples};
 use fc_generated::Fc;
@@ -11,7 +11,7 @@ use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
-/// Whether the machine has a tool. In CI nothing may be skipped.
+/// Returns `true` if the machine has a tool. CI skips nothing, so there a missing tool fails the test.
 fn has(tool: &str) -> bool {
     let there = Command::new(tool)
         .arg("--version")
@@ -24,7 +24,7 @@ fn has(tool: &str) -> bool {
             std::env::var_os("FC_CI").is_none(),
             "needs {tool}, and CI skips nothing"
         );
-        // Not by a macro, whose lines nobody sees while the test passes.
+        // The test framework captures `eprintln!` while the test passes, so this writes to stderr directly.
         let line = format!("skipped: {tool} is not installed\n");
         std::io::stderr().write_all(line.as_bytes()).unwrap();
     }
@@ -39,7 +39,7 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-/// Runs a tool in `operations/` and expects it to be content.
+/// Runs a tool in `operations/` and expects success.
 fn succeeds(tool: &str, args: &[&str]) {
     let output = Command::new(tool)
         .args(args)
@@ -49,7 +49,7 @@ fn succeeds(tool: &str, args: &[&str]) {
     assert!(output.status.success(), "{}", said(&output));
 }
 
-/// A command of the spec that the example robot answers with success.
+/// Returns a command of the spec that the example robot answers with success.
 fn operation() -> &'static OperationInfo {
     let is_command = |operation: &&OperationInfo| {
         operation.effect == Some(Effect::Read) && operation.code.is_some()
@@ -60,7 +60,7 @@ fn operation() -> &'static OperationInfo {
         .expect("a command that only asks")
 }
 
-/// A robot with a port of metrics, which has answered three calls.
+/// Starts a robot with a port of metrics and makes three calls. Returns the robot and the address of its metrics.
 async fn monitored() -> (Robot, String) {
     let [robot] = examples(["monitored"], "metrics");
     let robot = Robot::start(&robot, &["--metrics-port", "0"]);
@@ -78,7 +78,7 @@ async fn monitored() -> (Robot, String) {
     (robot, address)
 }
 
-/// The metrics as a plain HTTP client gets them.
+/// Returns the metrics as a plain HTTP client gets them.
 fn page(address: &str) -> String {
     let mut stream = TcpStream::connect(address).unwrap();
     stream
@@ -118,7 +118,7 @@ async fn the_metrics_keep_to_the_conventions() {
     assert!(output.status.success(), "{}", said(&output));
 }
 
-/// Every metric of an alert is one that a robot or an app has.
+/// The robot exports every `fc_server_` metric that the alerts name.
 #[tokio::test]
 #[ignore = "compiles a program with more features"]
 async fn the_alerts_name_metrics_that_there_are() {
@@ -153,7 +153,7 @@ fn the_alerts_are_sound() {
     }
 }
 
-/// The unit is one that systemd takes, and leaves a program little to do harm with.
+/// systemd accepts the unit, and rates its exposure at 2.0 of 10 at most.
 #[test]
 fn systemd_takes_the_unit() {
     if !has("systemd-analyze") {
@@ -172,7 +172,7 @@ fn systemd_takes_the_unit() {
     succeeds("systemd-analyze", &security);
 }
 
-/// Prometheus at work. It ends with its test.
+/// A running Prometheus, which is killed at the end of the test.
 struct Prometheus(Child);
 
 impl Drop for Prometheus {
@@ -190,7 +190,7 @@ async fn prometheus_reads_the_metrics() {
     }
     let (_robot, address) = monitored().await;
     let folder = tempfile::tempdir().unwrap();
-    // As in the guide, but for the address and the pace.
+    // The configuration of the guide, with another address, a shorter interval and the path of the alerts.
     let config = fs::read_to_string(operations().join("prometheus.yml")).unwrap();
     let alerts = operations().join("alerts.yml");
     let here = config
@@ -223,7 +223,7 @@ async fn prometheus_reads_the_metrics() {
         }
         lines.push(line);
     };
-    // Its log must not fill up.
+    // A full pipe would block Prometheus.
     std::thread::spawn(move || log.for_each(drop));
     let query = format!(
         "fc_server_calls_total{{job=\"fc-robot\",operation=\"{}\",result=\"success\"}}",

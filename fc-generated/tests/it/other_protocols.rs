@@ -1,7 +1,7 @@
-//! Protocols that share nothing with the real one: `meter/spec` (little-endian, CRC-32, ids of 16 bits, no
-//! compression) and `beacon/spec` (no envelope, no digest). What is made of them in Rust compiles, talks over TCP
-//! and holds the vectors. That `fc-reflect` and TypeScript hold these too, and that the dump makes the same, are tests
-//! of theirs and of `fc-codegen`.
+//! Tests protocols that share nothing with the real one: `meter/spec` (little-endian, CRC-32, ids of 16 bits, no
+//! compression) and `beacon/spec` (no envelope, no digest). Their Rust crates compile, talk over TCP and pass the
+//! vectors. Tests of `fc-reflect`, the TypeScript package and `fc-codegen` check the vectors there, and the output of
+//! the dump.
 
 use crate::support;
 use crate::support::nested;
@@ -17,13 +17,13 @@ fn model(name: &str) -> Model {
     support::model(&support::root().join("fc-generated/tests").join(name))
 }
 
-/// Makes a crate of the protocol, with its vectors beside it, and runs its tests.
+/// Generates a crate of the protocol with its vectors, and runs its tests.
 fn compiles_and_talks(name: &str) {
     made_for(name, name, &Targets::of([Product::Rust]), "own.rs");
 }
 
-/// Makes a crate called `project` of the protocol for these targets, with its vectors beside it, and runs its tests,
-/// those in the file `own` among them.
+/// Generates a crate called `project` of the protocol for these targets, with its vectors. Runs its tests, including
+/// the file `own`.
 fn made_for(name: &str, project: &str, targets: &Targets, own: &str) {
     let tests = support::root().join("fc-generated/tests");
     let model = model(name);
@@ -48,7 +48,7 @@ fn little_endian_protocol_with_crc_32_works() {
     compiles_and_talks("meter");
 }
 
-/// They send the same bytes, which the vectors hold, and the samples of the docs compile with them.
+/// With id types, the crate sends the same bytes as in the vectors, and the samples of the docs compile.
 #[test]
 #[ignore = "compiles a crate of its own"]
 fn protocol_with_id_types_works() {
@@ -62,7 +62,7 @@ fn protocol_without_envelope_and_digest_works() {
     compiles_and_talks("beacon");
 }
 
-/// The tests of the TypeScript package read what is committed.
+/// The tests of the TypeScript package read the committed files, so these must be up to date.
 #[test]
 fn committed_packages_match_their_specs() {
     for name in ["meter", "beacon"] {
@@ -74,7 +74,7 @@ fn committed_packages_match_their_specs() {
     }
 }
 
-/// Each audience of the meter has a whole protocol: a crate that compiles, without what is for the other.
+/// Each audience of the meter has a complete protocol. Its crate compiles and has nothing of the other audience.
 #[test]
 #[ignore = "compiles a crate of its own"]
 fn package_of_an_audience_has_only_its_part() {
@@ -107,13 +107,14 @@ fn package_of_an_audience_has_only_its_part() {
     }
 }
 
-/// What is the real protocol's own must not come out of another.
+/// Words of the real protocol must not appear in the output of another.
 #[test]
 fn other_protocols_have_no_part_of_the_real_one() {
     let words = ["MD5", "md5", "gzip", "cmdTime", "\"resultCode\"", "0xFC"];
     for name in ["meter", "beacon"] {
         for artifact in generate(&model(name), &Targets::default()).unwrap() {
-            // These are about the language, whatever the spec. A dissector contains its runtime for all protocols.
+            // These files describe the language, not the spec. A dissector contains its runtime, which is for all
+            // protocols.
             let of_all_protocols = ["errors.md", "language.md", "schema.json", ".lua"];
             if (of_all_protocols.iter()).any(|name| artifact.path.ends_with(name)) {
                 continue;

@@ -1,5 +1,4 @@
-//! A robot that is not complete, and the one for demos: what they do not carry out they refuse, and
-//! say so.
+//! A partial robot and the example robot refuse the commands that they do not carry out, as not implemented.
 
 #![allow(
     clippy::panic,
@@ -17,12 +16,12 @@ use fc_runtime::{
 };
 use std::net::Ipv4Addr;
 
-/// Has nothing yet.
+/// A robot without any command.
 struct Empty;
 
 impl PartialRobot for Empty {}
 
-/// What came of a call with the spec's example.
+/// The outcome of a call with the spec's example.
 struct Outcome {
     name: &'static str,
     effect: Effect,
@@ -48,7 +47,7 @@ macro_rules! call_all {
 }
 for_each_command!(call_all);
 
-/// An app at a robot with this service.
+/// Starts a robot with this service. Returns a connected app and the robot's handle.
 async fn connected(service: impl Service<Fc>) -> (Client, ServerHandle<Fc>) {
     let config = ServerConfig::new()
         .address(Ipv4Addr::LOCALHOST)
@@ -63,7 +62,7 @@ async fn connected(service: impl Service<Fc>) -> (Client, ServerHandle<Fc>) {
     (Client::connect(config).await.unwrap(), handle)
 }
 
-/// Whether a refusal says that the robot does not have the command.
+/// Returns `true` if the robot refuses the command as not implemented.
 fn is_not_implemented(refusal: &Refusal) -> bool {
     refusal.code == Fc::RESULTS.protocol.code && refusal.text.ends_with(": not implemented")
 }
@@ -85,7 +84,7 @@ async fn omitted_and_unknown_commands_are_distinguished() {
     assert_eq!(robot.counters().calls_not_implemented, calls);
 }
 
-/// No app is told that something moves where nothing does.
+/// A robot without motion must not report the success of a motion command.
 #[tokio::test]
 async fn the_example_robot_refuses_what_may_move() {
     let (client, _robot) = connected(RobotService::new(ExampleRobot::default())).await;

@@ -1,5 +1,5 @@
-//! The projects of the guide "Use it in your project", as somebody outside makes them: they build with
-//! the lines of their `Cargo.toml` and no others, and do what they say.
+//! The projects of the guide "Use it in your project", built outside the workspace as users build them. They need only
+//! the lines of their `Cargo.toml`, and do what the guide describes.
 
 use crate::support::nested;
 use crate::support::programs::Running;
@@ -7,10 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the robot of the guide says it is.
+/// The serial number that the robot of the guide returns.
 const NUMBER: &str = "100132007654321";
 
-/// Each project, the name of its program, and whether tokio may be in it.
+/// Each project, the name of its program, and `true` if it depends on tokio.
 const PROJECTS: [(&str, &str, bool); 4] = [
     ("app", "my-app", true),
     ("robot", "my-robot", true),
@@ -18,7 +18,7 @@ const PROJECTS: [(&str, &str, bool); 4] = [
     ("blocking", "my-tool", true),
 ];
 
-/// Builds a project in a folder of its own; answers its program.
+/// Builds a project in a separate folder. Returns the path of its program.
 fn build(folder: &Path, name: &str, program: &str, has_tokio: bool) -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let from = here.join("tests/projects").join(name);
@@ -31,7 +31,7 @@ fn build(folder: &Path, name: &str, program: &str, has_tokio: bool) -> PathBuf {
     let manifest = manifest.replace(path, &format!("path = {:?}", here.to_string_lossy()));
     let rest = "\n[workspace]\n\n[lints.rust]\nwarnings = \"deny\"\n";
     fs::write(project.join("Cargo.toml"), manifest + rest).unwrap();
-    // The versions that are there, so that nothing has to be fetched.
+    // The versions of the workspace, so that cargo downloads nothing.
     fs::copy(here.join("../Cargo.lock"), project.join("Cargo.lock")).unwrap();
 
     let target = nested::target();

@@ -1,5 +1,5 @@
-//! The READMEs: their figures, links and the picture of a frame are right, and the programs of this package's README
-//! talk to each other.
+//! Tests the READMEs. Their figures, links and picture of a frame are right. The programs of this package's README talk
+//! to each other.
 
 use crate::support::programs::Running;
 use crate::support::{self, nested};
@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Each README, and where the guides in its language lie.
+/// Each README, and the folder of the guides in its language.
 const READMES: [(&str, &str); 2] = [
     ("README.md", "docs-site/en/guides"),
     ("README.zh-CN.md", "docs-site/guides"),
@@ -18,7 +18,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The contents of a README's fences of one language.
+/// Returns the contents of a README's fences of one language.
 fn fences<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
     let open = format!("\n```{language}\n");
     let parts = text.split(&open).skip(1);
@@ -67,13 +67,13 @@ fn the_app_of_the_readme_calls_its_robot() {
     );
 }
 
-/// Replaces a piece of a program, which has to be there.
+/// Replaces a piece of a program, which must have it.
 fn replace(program: &str, from: &str, to: &str) -> String {
     assert!(program.contains(from), "no {from} in\n{program}");
     program.replace(from, to)
 }
 
-/// The Rust that they show is generated: an `rs` fence, which `adding_a_command` compares.
+/// The READMEs show only generated Rust, in an `rs` fence. `adding_a_command` compares it with the output.
 #[test]
 fn the_readmes_print_generated_rust_alone() {
     for (name, _) in READMES {
@@ -82,7 +82,7 @@ fn the_readmes_print_generated_rust_alone() {
     }
 }
 
-/// Builds programs as a package outside the workspace, with that manifest. Returns their paths.
+/// Builds programs in a package outside the workspace, with this manifest. Returns their paths.
 fn build<const N: usize>(
     name: &str,
     manifest: &str,
@@ -98,7 +98,7 @@ fn build<const N: usize>(
         [package, "\n", &manifest, "\n"].concat(),
     )
     .unwrap();
-    // The versions of the workspace, so that cargo need not fetch any.
+    // The versions of the workspace, so that cargo downloads nothing.
     fs::copy(root().join("Cargo.lock"), project.path().join("Cargo.lock")).unwrap();
     let sources = project.path().join("src/bin");
     fs::create_dir_all(&sources).unwrap();
@@ -124,7 +124,7 @@ fn build<const N: usize>(
     })
 }
 
-/// A guide may be linked from the README, or from another guide that is reached from there.
+/// Links lead from the README to every guide, directly or through other guides.
 #[test]
 fn every_guide_is_linked() {
     for (name, guides) in READMES {
@@ -148,7 +148,7 @@ fn every_guide_is_linked() {
     }
 }
 
-/// The pages of one folder that a text links to, where `open` begins each link.
+/// Returns the pages of one folder to which a text links. `open` begins each link.
 fn linked(text: &str, open: &str) -> Vec<String> {
     let links = text.split(open).skip(1);
     let pages = links.filter_map(|rest| rest.split([')', '#']).next());
@@ -162,7 +162,7 @@ fn is_page(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end == "md")
 }
 
-/// They are lower bounds, so that an addition does not make them wrong.
+/// The figures are lower bounds, so that an addition does not make them wrong.
 #[test]
 fn the_figures_of_the_readmes_are_reached() {
     let operations = support::model(&root()).operations.len();
@@ -211,7 +211,7 @@ fn the_picture_of_a_frame_is_the_golden_frame() {
     assert_eq!(drawn(&picture, "Data"), golden);
 }
 
-/// The bytes, in hex, of the group of a field in a picture, which the legend names as well.
+/// Returns the bytes in hex of a field's group in a picture. The legend must name the field too.
 fn drawn(picture: &str, field: &str) -> String {
     assert!(picture.contains(&format!(">{field}<")), "legend: {field}");
     let group = picture.split(&format!("<g id=\"{field}\"")).nth(1);

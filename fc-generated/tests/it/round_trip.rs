@@ -1,5 +1,5 @@
-//! Every operation that has a code, over TCP, through both typed stubs. The spec drives it: a new
-//! command is covered as soon as it is generated.
+//! Sends every operation that has a code over TCP, through both typed stubs. The spec drives the tests, so they cover
+//! each new command once its stubs are generated.
 
 #![allow(
     clippy::expect_used,
@@ -28,7 +28,7 @@ use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};
 use tokio::task::JoinHandle;
 
-/// Answers every command with the spec's example and keeps the last request.
+/// Answers every command with the spec's example, and keeps the last request.
 #[derive(Clone, Default)]
 struct Recorder(Arc<Mutex<Option<Box<dyn Any + Send>>>>);
 
@@ -80,7 +80,7 @@ macro_rules! commands {
 }
 for_each_command!(commands);
 
-/// Calls with the spec's example, and with a key that the spec does not know.
+/// Calls with the spec's example, and with an additional key that the spec does not know.
 async fn call_and_compare<C>(call: impl AsyncFn(&Client, &C) -> Result<C::Response, CallError>)
 where
     C: Command<Response: Debug + PartialEq> + Debug + PartialEq,
@@ -116,7 +116,7 @@ macro_rules! reports {
 }
 for_each_report!(reports);
 
-/// Pushes the spec's example, and the same with a key that the spec does not know.
+/// Pushes the spec's example, and the same with an additional key that the spec does not know.
 async fn push_and_compare<R: Report>(
     push: impl AsyncFn(&Reporter, &R) -> Result<Vec<Acknowledgement>, PushError>,
     wrap: impl Fn(R) -> AnyReport,
@@ -208,7 +208,7 @@ async fn a_handlers_refusal_reaches_the_caller() {
     robot.stop().await;
 }
 
-/// A server at ports of the system's choice.
+/// A server at ports that the system chooses.
 struct Stub {
     handle: ServerHandle<Fc>,
     config: ClientConfig,
@@ -233,7 +233,7 @@ impl Stub {
         }
     }
 
-    /// A client that the server knows of: it has answered it.
+    /// Returns a client that has received a response, so the server knows its connection.
     async fn client(&self) -> Client {
         let client = Client::connect(self.config.clone()).await.unwrap();
         client.connection().call_raw(u16::MAX, b"{}").await.unwrap();

@@ -1,4 +1,4 @@
-//! The example robot is asked to end while it is at work.
+//! Sends SIGTERM to the example robot, at work and idle.
 
 #![cfg(unix)]
 
@@ -13,7 +13,7 @@ fn robot() -> PathBuf {
     robot
 }
 
-/// A command of the spec: its code and the example of its request.
+/// Returns the code of a command and the example of its request.
 fn command() -> (u16, &'static [u8]) {
     OPERATIONS
         .iter()
@@ -62,7 +62,7 @@ fn sigterm_while_idle_ends_it_with_success() {
     assert!(!log.contains("WARN"), "{log}");
 }
 
-/// What does not end by itself is cut off when it is asked for again.
+/// A second signal ends the calls that still run.
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]
 async fn a_second_signal_ends_it_at_once() {
     let mut robot = Robot::start(&robot(), &["--delay", "600000"]);

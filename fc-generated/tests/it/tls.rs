@@ -1,4 +1,4 @@
-//! The two examples of TLS against each other, and against those who have no business there.
+//! Runs the two TLS examples against each other, and against peers without a valid certificate or handshake.
 
 use crate::support::programs::{Robot, examples};
 use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// One who signs certificates.
+/// An authority that signs certificates.
 struct Authority {
     pem: String,
     issuer: Issuer<'static, KeyPair>,
@@ -34,7 +34,7 @@ impl Authority {
         fs::write(folder.join(format!("{name}.key")), key.serialize_pem()).unwrap();
     }
 
-    /// A folder with what a program needs that trusts this authority.
+    /// Returns a folder for a program that trusts this authority.
     fn trusted(&self) -> TempDir {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("ca.pem"), &self.pem).unwrap();
@@ -76,7 +76,7 @@ impl World {
             .unwrap()
     }
 
-    /// The app with a proper certificate is answered.
+    /// Asserts that the robot answers an app with a valid certificate.
     fn serves(&self) {
         let folder = self.authority.trusted();
         self.authority.sign(folder.path(), "app", "app");
@@ -87,12 +87,12 @@ impl World {
         assert!(said.starts_with("answered: "), "{said}");
     }
 
-    /// The app is not, and says so; the robot says why.
+    /// Asserts that the app fails, and that the robot logs the reason.
     fn refuses(&mut self, folder: &TempDir, why: &str) {
         let output = self.app(folder);
         assert!(!output.status.success());
         assert!(output.stdout.is_empty(), "{output:?}");
-        // It may have tried several times.
+        // The app may have tried several times.
         self.robot.logs(&format!("the handshake failed: {why}"));
     }
 }
@@ -107,12 +107,12 @@ fn foreign_certificate_is_refused_by_both_sides() {
     let mut world = World::new();
     let other = Authority::new();
 
-    // The app's is signed by another.
+    // Another authority signed the app's certificate.
     let folder = world.authority.trusted();
     other.sign(folder.path(), "app", "app");
     world.refuses(&folder, "invalid peer certificate");
 
-    // The app trusts another.
+    // The app trusts another authority.
     let folder = other.trusted();
     world.authority.sign(folder.path(), "app", "app");
     world.refuses(&folder, "received fatal alert");
@@ -120,7 +120,7 @@ fn foreign_certificate_is_refused_by_both_sides() {
     world.serves();
 }
 
-/// Whoever talks no TLS, or says nothing at all, is refused or gives way.
+/// Peers that send plain bytes are refused, and silent peers block no other app.
 #[test]
 fn missing_handshake_blocks_no_other_app() {
     let mut world = World::new();
@@ -135,7 +135,7 @@ fn missing_handshake_blocks_no_other_app() {
         let mut plain = TcpStream::connect(("127.0.0.1", port)).unwrap();
         let _ = plain.write_all(&[0x41; 512]);
         let mut answer = Vec::new();
-        // An alert at most, and the end.
+        // The robot sends at most an alert before it closes the connection.
         let _ = plain.read_to_end(&mut answer);
         assert!(answer.len() < 64, "{answer:?}");
         world.robot.logs("the handshake failed");

@@ -1,4 +1,4 @@
-//! The golden frames in `vectors/`, accepted and rejected, against the codec and the typed stubs.
+//! Tests the codec and the typed stubs with the golden frames in `vectors/`, accepted and rejected.
 
 use crate::support;
 use crate::support::Type;
@@ -13,7 +13,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-/// A frame that has been taken apart.
+/// The parts of a decoded frame.
 struct Parts {
     header: FrameHeader,
     id: FrameId,
@@ -68,7 +68,8 @@ fn every_vector_holds() {
     }
 }
 
-/// Messages of one key of a type each, and how they are read and written by the type's name.
+/// Defines messages with one key of each type. `of_one_key` returns the function that reads and writes one, by the name
+/// of the key's type.
 macro_rules! of_one_key {
     ($($message:ident of $ty:ty: $($name:literal)|*;)*) => {
         $(
@@ -106,7 +107,8 @@ of_one_key! {
     OfObject of OfI32: "object";
 }
 
-/// Bodies at the edges of JSON are read, refused and written again as `bodies.json` says.
+/// `bodies.json` has bodies that are edge cases of JSON. Each is refused, or read and written again, as the file
+/// expects.
 #[test]
 fn every_body_is_read_as_the_rules_say() {
     let path = support::root().join("fc-generated/vectors/bodies.json");
@@ -131,7 +133,7 @@ fn every_body_is_read_as_the_rules_say() {
     assert!(seen.len() > 200);
 }
 
-/// Cases that each side of every operation has, whatever its fields: in frames, and in bodies.
+/// Cases that each side of every operation has: in frames, and in bodies.
 const ACCEPTED: [&str; 2] = ["plain", "gzip"];
 const ACCEPTED_BODIES: [&str; 4] = ["plain", "unknown_keys", "minimal", "maximal"];
 const REJECTED: [&str; 5] = [
@@ -143,12 +145,12 @@ const REJECTED: [&str; 5] = [
 ];
 const REJECTED_BODIES: [&str; 3] = ["bad_json", "not_an_object", "too_deep"];
 
-/// An empty file would prove nothing.
+/// Asserts that a file has the required cases, because an empty file would prove nothing.
 fn has_its_cases(operation: &Operation, file: &Value) {
     assert_eq!(file["operation"], operation.name.as_str());
     let coded = operation.code.value.is_some();
     let typed = operation.kind() != Kind::Stream;
-    // A stream goes one way.
+    // A stream has only one direction.
     let sides = if typed {
         &["request", "response"][..]
     } else {
@@ -188,7 +190,7 @@ fn has_its_cases(operation: &Operation, file: &Value) {
     }
 }
 
-/// Frames of each kind in both directions: as they are, compressed and empty.
+/// Asserts that there are frames of each kind in both directions: plain, compressed and empty.
 fn has_frames_of_every_kind(file: &Value) {
     let names = |list: &str| -> BTreeSet<&str> {
         let vectors = file[list].as_array().unwrap().iter();
@@ -261,7 +263,7 @@ fn accepted(model: &Model, operation: &str, vector: &Value) {
     assert_eq!(again, *expected, "{place}");
 }
 
-/// The name of the error.
+/// Returns the name of the error, if there is one.
 fn rejected(model: &Model, operation: &str, vector: &Value) -> Option<&'static str> {
     let body = match vector["frame"].as_str() {
         Some(frame) => match take_apart(&unhex(frame)) {
@@ -279,7 +281,7 @@ fn rejected(model: &Model, operation: &str, vector: &Value) -> Option<&'static s
         .map(|error| error.name())
 }
 
-/// How the bodies of an operation are read and written.
+/// Returns the function that reads and writes the bodies of an operation.
 fn typed(
     model: &Model,
     operation: &str,
@@ -293,7 +295,7 @@ fn typed(
     }
 }
 
-/// The one frame that `bytes` hold.
+/// Returns the parts of the only frame in `bytes`.
 fn take_apart(bytes: &[u8]) -> Result<Parts, FrameError> {
     let mut decoder = Decoder::<Fc>::new();
     decoder.push(bytes);

@@ -1,4 +1,5 @@
-//! The meter with a type for the ids of each entity; `tests/it/other_protocols.rs` runs this in a crate made so.
+//! The meter with a type for the ids of each entity. `tests/it/other_protocols.rs` runs this in a crate that is
+//! generated with such types.
 
 #![allow(missing_docs, reason = "tests")]
 
@@ -6,7 +7,7 @@ use fc_generated::{Band, Operator, OperatorId, SetTariffRequest, TariffId};
 use fc_runtime::json::to_vec;
 use fc_runtime::{Allowance, Message as _, json};
 
-/// Alone, in a list, inside a text and inside an object.
+/// Ids occur alone, in a list, in a string and in an object.
 #[test]
 fn fields_hold_ids_of_their_entity() {
     let request = SetTariffRequest::new(Band::Day)
@@ -18,7 +19,7 @@ fn fields_hold_ids_of_their_entity() {
     assert_eq!(read, request);
     assert_eq!(u32::from(read.tariff_or_default()), 12);
     assert_eq!(SetTariffRequest::DEFAULT_TARIFF, TariffId(7));
-    // What a constant cannot hold stays a text.
+    // A constant cannot hold an id that is a string, so this default stays a string.
     assert_eq!(request.by_or_default(), "nobody");
     let operator = Operator::new(OperatorId::from("anna"));
     assert_eq!(operator.name.to_string(), "anna");

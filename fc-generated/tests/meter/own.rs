@@ -1,4 +1,5 @@
-//! What the meter does otherwise; `tests/it/other_protocols.rs` runs this in a crate made from it.
+//! Tests the features of the meter's protocol that the real one does not have. `tests/it/other_protocols.rs` runs this
+//! in a crate that is generated from its spec.
 
 #![allow(missing_docs, reason = "tests")]
 
@@ -59,7 +60,7 @@ async fn client(address: SocketAddr) -> Client {
     Client::connect(config).await.unwrap()
 }
 
-/// In milliseconds, as requests say it.
+/// Returns the time in milliseconds, as in requests.
 fn now() -> u128 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     since.unwrap().as_millis()
@@ -78,7 +79,7 @@ fn the_header_is_that_of_the_spec() {
     assert_eq!(bytes, expected);
 }
 
-/// What the spec says of states, and nothing beyond it.
+/// The methods of an enum follow the state rules of the spec, and add none.
 #[test]
 fn an_enum_knows_how_its_values_follow_each_other() {
     let all = |mark: fn(&Switch) -> bool| -> Vec<&str> {
@@ -93,7 +94,7 @@ fn an_enum_knows_how_its_values_follow_each_other() {
         ["shut", "stuck"]
     );
     assert_eq!(all(|next| next.may_follow(&Switch::Closed)), [""; 0]);
-    // A newer meter may have a state of its own in between.
+    // A newer meter may have another state in between.
     let unknown = Switch::from("locked");
     assert!(unknown.may_follow(&Switch::Closed) && Switch::Open.may_follow(&unknown));
     assert!(!unknown.is_final() && !unknown.is_error());
@@ -103,7 +104,7 @@ fn an_enum_knows_how_its_values_follow_each_other() {
     assert!(!Band::from(9).normally_follows(&Band::Day));
 }
 
-/// Whoever makes a report can have it checked; what is received is taken as it is.
+/// A sender can check its reports with `checked`. Received reports are not checked.
 #[test]
 fn a_message_knows_which_of_its_fields_are_asked_for() {
     let moved = |switch: Switch, by: u8| {
@@ -132,13 +133,13 @@ fn a_message_knows_which_of_its_fields_are_asked_for() {
         fault(open.with_amp(5)),
         Some(("amp", ConditionErrorKind::Unasked, unasked))
     );
-    // Not all that is asked holds.
+    // Only one of the two conditions holds.
     assert_eq!(fault(moved(Switch::Open, 1).with_amp(5)), None);
     assert_eq!(
         fault(moved(Switch::Open, 1)).map(|(key, kind, _)| (key, kind)),
         Some(("amp", ConditionErrorKind::Missing))
     );
-    // The example is one that is as it should be.
+    // The example meets all conditions.
     assert!(SwitchMoved::example().checked().is_ok());
 }
 
@@ -166,7 +167,7 @@ async fn a_robot_refuses_a_command_in_the_wrong_state() {
         (Switch::Closing, refused),
         (Switch::Closed, refused),
         (Switch::Stuck, None),
-        // Of a state that it does not know, the spec does not say that the command is accepted.
+        // The spec does not accept the command in an unknown state.
         (Switch::from("locked"), refused),
     ] {
         let (address, handle, serving) = serve(RobotService::new(Switchgear(state.clone()))).await;
@@ -182,7 +183,7 @@ async fn a_robot_refuses_a_command_in_the_wrong_state() {
     }
 }
 
-/// What tools find without the types.
+/// Tools read these from the descriptors, without the types.
 #[test]
 fn descriptor_has_conditions_and_cadence() {
     const STATES: &[States] = &[States {
@@ -231,7 +232,7 @@ impl PartialRobot for Closing {
     }
 }
 
-/// By the number that the answer and the reports have.
+/// The job number in the response and in the reports ties them together.
 #[tokio::test]
 async fn following_ends_at_the_final_state() {
     let (address, handle, serving) = serve(RobotService::new(Closing(5.into()))).await;
@@ -257,7 +258,7 @@ async fn following_ends_at_the_final_state() {
         (Switch::Open, 6),
         (Switch::Closing, 5),
         (Switch::Stuck, 5),
-        // It skips a state.
+        // This report skips a state.
         (Switch::Closed, 6),
     ] {
         reporter
@@ -287,7 +288,7 @@ async fn following_ends_at_the_final_state() {
     serving.await.unwrap();
 }
 
-/// Results are carried by keys of the meter's own.
+/// The meter has other keys for results than the real protocol.
 #[tokio::test]
 async fn a_refusal_is_read_from_its_own_keys() {
     let (address, handle, serving) = serve(RobotService::new(Robot)).await;
@@ -312,7 +313,7 @@ async fn a_refusal_is_read_from_its_own_keys() {
     serving.await.unwrap();
 }
 
-/// What is absent stays so, and has a value where it is asked for.
+/// An absent key stays absent, and `…_or_default` returns its default.
 #[test]
 fn a_default_is_what_absence_means() {
     assert_eq!(SetTariffRequest::DEFAULT_PRICE, 100);
@@ -346,7 +347,7 @@ fn a_default_is_what_absence_means() {
     );
 }
 
-/// What a command declares needs no number on either side; what it does not declare is none of its errors.
+/// Both sides use a declared error by its name, not its number. Any other result is none of the command's errors.
 #[tokio::test]
 async fn a_declared_error_has_a_name_on_both_sides() {
     let (address, handle, serving) = serve(RobotService::new(Robot)).await;
@@ -384,7 +385,7 @@ async fn a_declared_error_has_a_name_on_both_sides() {
     assert!(CallError::Timeout.declared::<SetTariffRequest>().is_none());
 }
 
-/// A damaged frame is found by its CRC-32 and answered with the result for that; an old one by its time.
+/// The robot detects a damaged frame by its CRC-32 and an old one by its time. Each gets the result for its error.
 #[tokio::test]
 async fn damage_and_age_are_found() {
     let (address, handle, serving) = serve(RobotService::new(Robot)).await;
@@ -424,7 +425,7 @@ async fn damage_and_age_are_found() {
     serving.await.unwrap();
 }
 
-/// In code it is a bool, on the wire 1 or 0; another number is refused before a handler runs.
+/// The value is a bool in code, and 1 or 0 on the wire. Another number is refused before a handler runs.
 #[tokio::test]
 async fn a_bool_travels_as_a_number() {
     let service = |request: Request<'_, Meter>| -> Handling {
@@ -481,7 +482,7 @@ async fn an_answer_has_its_bool_as_a_number() {
     serving.await.unwrap();
 }
 
-/// An answer that is kept has its CRC-32 gone on with.
+/// A prepared response keeps the CRC-32 of its body, and each response continues it over the envelope.
 #[tokio::test]
 async fn a_kept_answer_is_read_by_the_app() {
     let kept = PreparedResponse::new(&ReadPowerResponse::example()).unwrap();
@@ -501,7 +502,8 @@ async fn a_kept_answer_is_read_by_the_app() {
     serving.await.unwrap();
 }
 
-/// What a command starts comes on the data port under the same code, and each stream as its type.
+/// A stream that a command starts arrives on the data port under the command's code. Each stream is received as its
+/// type.
 #[tokio::test]
 async fn streams_go_both_ways_as_their_types() {
     let config = ServerConfig::new()

@@ -1,8 +1,8 @@
-//! The stubs of the odd protocol; `tests/it/odd_spec.rs` runs this in a crate made from it.
+//! Tests the stubs of the odd protocol. `tests/it/odd_spec.rs` runs this in a crate that is generated from its spec.
 
 #![allow(deprecated, missing_docs, reason = "tests")]
 
-// The spec takes many a name: all others go by their full paths.
+// The spec uses many common names, so everything else is written with its full path.
 use fc_generated::*;
 
 macro_rules! messages {
@@ -55,7 +55,7 @@ fn names_give_way_to_each_other() {
     assert_eq!(<OddLine as fc_runtime::Protocol>::REQUEST_HEAD, [0, 1, 2]);
 }
 
-/// Groups stand below `messages` alone, so that `std` above is the crate that everybody knows.
+/// Groups are modules of `messages` only, so `std` at the top is still the standard library.
 #[test]
 fn groups_may_be_called_like_crates() {
     let error = messages::std::Error::new();

@@ -1,4 +1,4 @@
-//! Arbitrary JSON that a type of the spec allows.
+//! Generates arbitrary JSON that a type of the spec allows.
 
 use fc_reflect::sample::{Profile, Samples};
 use fc_spec::model::{
@@ -6,10 +6,10 @@ use fc_spec::model::{
     TypeDef, TypeShape, Value, WireForm,
 };
 
-/// Objects nested deeper than this are left out where that is allowed.
+/// Below this depth, optional keys are left out.
 const DEPTH: usize = 5;
 
-/// Numbers without end from one seed (`SplitMix64`).
+/// An endless sequence of numbers from one seed (`SplitMix64`).
 pub struct Random(pub u64);
 
 impl Random {
@@ -21,7 +21,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number below `bound`.
+    /// Returns a number below `bound`.
     fn below(&mut self, bound: usize) -> usize {
         usize::try_from(self.next() % u64::try_from(bound.max(1)).unwrap()).unwrap()
     }
@@ -44,7 +44,7 @@ impl Random {
     }
 }
 
-/// Makes values of named types.
+/// Generates values of named types.
 pub struct Arbitrary<'m> {
     samples: Samples<'m>,
 }
@@ -54,7 +54,7 @@ impl<'m> Arbitrary<'m> {
         Self { samples }
     }
 
-    /// A value as an encoder writes it: keys in order, no quirk used.
+    /// Returns a value as an encoder writes it: keys in order, and no quirk.
     pub fn value(&self, ty: &TypeDef, random: &mut Random) -> Value {
         self.named(ty, random, DEPTH)
     }
@@ -89,7 +89,7 @@ impl<'m> Arbitrary<'m> {
                 || matches!(&value, Value::Array(items) if items.is_empty())
                 || value == Value::String(String::new())
                 || value == Value::Null;
-            // An optional key that is null reads as absent.
+            // An optional key with null reads as absent.
             if field.optional && value == Value::Null {
                 continue;
             }
@@ -126,7 +126,7 @@ impl<'m> Arbitrary<'m> {
                 integer((i64::MIN.into(), i64::MAX.into()), field, random)
             }
             Type::Float(kind) => float(*kind, field, random),
-            // Strings of any pattern are not worth a generator: the example is one.
+            // There is no generator for patterns: the example serves as the value.
             Type::String if field.details().constraints.pattern.is_some() => match &field.example {
                 Example::Given(value) => value.clone(),
                 Example::Derived | Example::Absent => Value::String(String::new()),
@@ -157,7 +157,7 @@ impl<'m> Arbitrary<'m> {
                     .map(|_| self.typed(item, field, random, depth.saturating_sub(1)))
                     .collect()
             }
-            // An enum of which the field takes some values only.
+            // The field allows only some values of the enum.
             Type::Named(_) if !field.details().constraints.only.is_empty() => {
                 scalar(random.pick(&field.details().constraints.only))
             }
@@ -229,14 +229,14 @@ fn float(kind: FloatKind, field: &Field, random: &mut Random) -> Value {
     Value::Number(Number::Float(match kind {
         FloatKind::F64 => value,
         FloatKind::F32 if f64::from(value as f32).is_finite() => {
-            // As the shortest decimal that is read as this f32 again.
+            // The shortest decimal that reads as this f32 again.
             format!("{:?}", value as f32).parse().unwrap()
         }
         FloatKind::F32 => share,
     }))
 }
 
-/// How many items, characters or bytes.
+/// Returns an allowed number of items, characters or bytes.
 fn count(field: &Field, random: &mut Random, most: usize) -> u64 {
     match field.details().constraints.length {
         Some((least, most)) => least + random.next() % (most.min(least + 40) - least + 1),
@@ -255,7 +255,7 @@ fn character(random: &mut Random) -> char {
     }
 }
 
-/// Any JSON.
+/// Returns any JSON value.
 fn json(random: &mut Random, depth: usize) -> Value {
     match random.below(if depth == 0 { 5 } else { 7 }) {
         0 => Value::Null,

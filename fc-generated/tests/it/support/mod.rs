@@ -1,4 +1,4 @@
-//! What several tests need: the spec's model, and every message type by its name.
+//! Helpers that several tests share: the spec's model, and every message type by its name.
 
 #[cfg(feature = "client")]
 pub mod arbitrary;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The project's root.
+/// Returns the project's root.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
@@ -24,7 +24,7 @@ pub fn root() -> PathBuf {
         .to_owned()
 }
 
-/// The model of the spec below `root`.
+/// Returns the model of the spec below `root`.
 pub fn model(root: &Path) -> Model {
     let mut faults = Faults::new();
     let sources = read_dir(root, Path::new("spec"), &mut faults);
@@ -32,16 +32,16 @@ pub fn model(root: &Path) -> Model {
     model.unwrap_or_else(|| panic!("{}", render(&faults, &sources, Format::Text, Lang::En)))
 }
 
-/// What can be done with a message type that is known by name alone.
+/// The functions of a message type that is known only by its name.
 #[derive(Clone, Copy)]
 pub struct Type {
     /// Its name.
     pub name: &'static str,
-    /// Reads the own keys and writes them again.
+    /// Reads the keys of the type and writes them again.
     pub transcode: fn(&[u8]) -> Result<Vec<u8>, BodyError>,
-    /// The same beside the envelope of a request.
+    /// The same with the envelope of a request.
     pub request: fn(&[u8]) -> Result<Vec<u8>, BodyError>,
-    /// The same beside the envelope of a response.
+    /// The same with the envelope of a response.
     pub response: fn(&[u8]) -> Result<Vec<u8>, BodyError>,
 }
 
@@ -55,7 +55,7 @@ impl Type {
         }
     }
 
-    /// The type of this name; that of a body without keys if there is no name.
+    /// Returns the type of this name. Without a name, returns the type of a body without keys.
     pub fn named(name: Option<&str>) -> Self {
         let Some(name) = name else {
             return Self::of::<Empty>("Empty");
@@ -80,7 +80,7 @@ fn enveloped<E: Message, B: Message>(text: &[u8]) -> Result<Vec<u8>, BodyError> 
     Ok(out)
 }
 
-/// Copies a folder with all that is in it.
+/// Copies a folder and everything in it.
 pub fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap() {
@@ -94,7 +94,7 @@ pub fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Every file below a folder, by its path from there.
+/// Returns every file below a folder, by its relative path.
 pub fn tree(root: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![root.to_owned()];

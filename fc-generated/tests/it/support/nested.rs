@@ -1,4 +1,4 @@
-//! A crate of its own around generated sources, built and tested by a cargo within the test.
+//! A separate crate around generated sources. The test builds and tests it with a nested cargo.
 
 use fc_codegen::emit::generate;
 use fc_codegen::output::plan;
@@ -9,12 +9,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Makes the crate in `project` from a model; `tests` become its tests.
+/// Generates the crate in `project` from a model. The files in `tests` become its tests.
 pub fn write_crate(project: &Path, model: &Model, tests: &[&Path]) {
     write_crate_for(project, model, &Targets::of([Product::Rust]), tests);
 }
 
-/// The same for other targets, the Rust package among them.
+/// Like `write_crate`, for other targets, which must include the Rust package.
 pub fn write_crate_for(project: &Path, model: &Model, targets: &Targets, tests: &[&Path]) {
     plan(generate(model, targets).unwrap(), project, &[])
         .unwrap()
@@ -22,11 +22,11 @@ pub fn write_crate_for(project: &Path, model: &Model, targets: &Targets, tests: 
         .unwrap();
 
     let root = super::root();
-    // Cargo tells crates in one target directory apart by name and version, not by where they are: one
-    // would be taken for the other, if it was built later.
+    // In one target directory, cargo distinguishes crates by name and version, not by path. Each project needs its own
+    // version, so that cargo does not use the build of another.
     let apart = project.file_name().unwrap().to_string_lossy();
     let apart = apart.replace('_', "-");
-    // Quoted and escaped as TOML and Rust both do.
+    // TOML and Rust quote and escape strings in the same way.
     let at = |name: &str| format!("{:?}", root.join(name).to_string_lossy());
     let manifest = format!(
         "\
@@ -68,19 +68,20 @@ rust_2018_idioms = {{ level = \"deny\", priority = -1 }}
     let folder = project.join("fc-generated");
     fs::create_dir_all(folder.join("tests")).unwrap();
     fs::write(folder.join("Cargo.toml"), manifest).unwrap();
-    // The versions that are there, so that nothing has to be fetched.
+    // The versions of the workspace, so that cargo downloads nothing.
     fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     for test in tests {
         fs::copy(test, folder.join("tests").join(test.file_name().unwrap())).unwrap();
     }
 }
 
-/// Where all crates that tests make are built, those of fc-cli among them: dependencies are compiled once.
+/// Returns the target directory of all crates that tests generate, including those of fc-cli. Dependencies compile
+/// once.
 pub fn target() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("nested")
 }
 
-/// Runs cargo in the crate and answers what it printed; it has to succeed.
+/// Runs cargo in the crate and returns its output. It must succeed.
 pub fn cargo(project: &Path, arguments: &[&str]) -> String {
     let output = run(project, arguments);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -92,14 +93,14 @@ pub fn cargo(project: &Path, arguments: &[&str]) -> String {
     text
 }
 
-/// Runs cargo in the crate and answers what it complained of; it has to fail.
+/// Runs cargo in the crate and returns its errors. It must fail.
 pub fn refused(project: &Path, arguments: &[&str]) -> String {
     let output = run(project, arguments);
     assert!(!output.status.success(), "cargo {arguments:?} succeeded");
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Cargo, without the variables that describe this package. Build scripts that read them would run again.
+/// Returns cargo without the variables that describe this package. Build scripts that read them would run again.
 pub fn command() -> Command {
     let mut cargo = Command::new(env!("CARGO"));
     for (name, _) in std::env::vars_os() {

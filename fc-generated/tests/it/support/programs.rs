@@ -1,10 +1,10 @@
-//! The example programs, built where a test was, and what they say.
+//! Builds and runs the example programs, and reads their output.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, ChildStdout, Command, ExitStatus, Stdio};
 
-/// The paths of examples, which need these features of the crate beside the default ones.
+/// Builds examples with these features of the crate, in addition to the default ones. Returns their paths.
 pub fn examples<const N: usize>(names: [&str; N], features: &str) -> [PathBuf; N] {
     let test = std::env::current_exe().unwrap();
     let profile = test
@@ -12,7 +12,7 @@ pub fn examples<const N: usize>(names: [&str; N], features: &str) -> [PathBuf; N
         .and_then(|deps| deps.parent())
         .expect("target/profile/deps");
     let mut cargo = super::nested::command();
-    // With the features that dependencies have where all of the workspace is tested, so that nothing is compiled twice.
+    // `--workspace` gives dependencies the same features as a test of the whole workspace, so nothing compiles twice.
     cargo.args(["build", "--quiet", "--offline", "--workspace"]);
     for feature in features.split_whitespace() {
         cargo.args(["--features", &format!("fc-generated/{feature}")]);
@@ -39,14 +39,14 @@ pub fn examples<const N: usize>(names: [&str; N], features: &str) -> [PathBuf; N
     })
 }
 
-/// A program that ends with its test.
+/// A program that is killed at the end of its test.
 pub struct Running {
     child: Child,
     output: BufReader<ChildStdout>,
 }
 
 impl Running {
-    /// Starts it.
+    /// Starts the program.
     pub fn start(program: &Path, args: &[&str]) -> Self {
         let mut child = Command::new(program)
             .args(args)
@@ -57,7 +57,7 @@ impl Running {
         Self { child, output }
     }
 
-    /// Its next line.
+    /// Returns its next line.
     pub fn line(&mut self) -> String {
         let mut line = String::new();
         self.output.read_line(&mut line).unwrap();
@@ -67,25 +67,25 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // A program that has ended cannot be killed.
+        // The program may have ended, so errors do not matter.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// A robot at work. It ends with its test.
+/// A running robot, which is killed at the end of its test.
 pub struct Robot {
     pub child: Child,
     pub output: BufReader<ChildStdout>,
     pub log: BufReader<ChildStderr>,
-    /// Its ports, of commands and of streams.
+    /// Its ports: first for commands, then for streams.
     pub ports: [u16; 2],
-    /// Its port of metrics, if it has one.
+    /// Its port for metrics, if it has one.
     pub metrics: Option<u16>,
 }
 
 impl Robot {
-    /// Starts it at free ports, with its whole log, and waits until it says which.
+    /// Starts the robot at free ports with its whole log, and waits until it prints the ports.
     pub fn start(program: &PathBuf, args: &[&str]) -> Self {
         let mut child = Command::new(program)
             .args(["--command-port", "0", "--data-port", "0"])
@@ -121,7 +121,7 @@ impl Robot {
         }
     }
 
-    /// Reads its log up to a line with `words`, and gives that.
+    /// Reads its log up to a line with `words`, and returns that line.
     pub fn logs(&mut self, words: &str) -> String {
         let mut lines = String::new();
         loop {
@@ -137,7 +137,7 @@ impl Robot {
         }
     }
 
-    /// Asks it to end, as systemd does.
+    /// Sends SIGTERM to it, as systemd does.
     #[cfg(unix)]
     pub fn terminate(&self) {
         let kill = format!("kill -TERM {}", self.child.id());
@@ -145,7 +145,7 @@ impl Robot {
         assert!(asked.success());
     }
 
-    /// Waits for its end: how it ended, the rest of what it said, and of its log.
+    /// Waits for its end. Returns its exit status, the rest of its output and the rest of its log.
     pub fn wait(mut self) -> (ExitStatus, String, String) {
         let (mut rest, mut log) = (String::new(), String::new());
         self.output.read_to_string(&mut rest).unwrap();
@@ -156,7 +156,7 @@ impl Robot {
 
 impl Drop for Robot {
     fn drop(&mut self) {
-        // One that has ended cannot be killed, which is as well.
+        // The robot may have ended, so errors do not matter.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,5 @@
-//! Client and server of any protocol; `tests/it/other_protocols.rs` runs this in crates made of their specs.
+//! Tests a client and a server of any protocol. `tests/it/other_protocols.rs` runs this in crates that are generated
+//! from their specs.
 
 use fc_generated::*;
 use fc_runtime::{
@@ -34,7 +35,7 @@ async fn every_command_and_report_makes_its_round() {
     let serving = tokio::spawn(server.run());
     let client = Client::connect(config).await.unwrap();
 
-    // Round after round, so that ids begin again.
+    // Several rounds, so that ids begin again.
     for _ in 0..3 {
         macro_rules! call {
             ($($method:ident $request:ident $response:ident;)*) => {
@@ -80,7 +81,8 @@ async fn every_command_and_report_makes_its_round() {
     serving.await.unwrap();
 }
 
-/// The frames of the vectors are taken, or refused by the name that is said, and plain ones are made again.
+/// Decodes the frames of the vectors and returns their number. Each is accepted, or refused with the expected error.
+/// Plain frames are encoded again to the same bytes.
 fn hold_vectors<P: Protocol>(_: &Connection<P>) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors");
     let mut count = 0;
@@ -120,7 +122,7 @@ fn hold_vectors<P: Protocol>(_: &Connection<P>) -> usize {
     count
 }
 
-/// What a reader of the operation says of a body.
+/// Returns the name of the error that the types of the operation find in a body, or `none`.
 fn body_error<P: Protocol>(file: &Value, id: FrameId, body: &[u8]) -> &'static str {
     let operation = P::operations()
         .iter()
