@@ -1,5 +1,5 @@
-//! An app that tries out a robot: calls every command of the spec with its example, takes the
-//! robot's reports and the picture of a map, and prints what came of each.
+//! An app that tries out a robot. It calls every command of the spec with its example, receives the
+//! robot's reports and the picture of a map, and prints each outcome.
 //!
 //! ```text
 //! cargo run --example robot &
@@ -27,7 +27,7 @@ Usage: app [--host 127.0.0.1] [--command-port PORT] [--data-port PORT] [--gzip-f
 Without ports, those of the spec. With --gzip-from, whatever has so many bytes is compressed.
 Without --lang, the language of the environment.";
 
-/// How long the app waits for what the robot sends of its own accord.
+/// Longest wait for a report or a picture.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 #[tokio::main(flavor = "current_thread")]
@@ -54,7 +54,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     }
 }
 
-/// What came of each operation so far.
+/// The outcomes of the operations so far.
 struct Tour {
     lang: Lang,
     table: Table,
@@ -114,12 +114,12 @@ for_each_command!(call_all);
 
 macro_rules! count_reports {
     ($($method:ident $report:ident $acknowledgement:ident;)*) => {
-        /// Codes of all reports of the spec.
+        /// Returns the codes of all reports of the spec.
         fn report_codes() -> BTreeSet<u16> {
             [$(<fc_generated::$report as Report>::CODE),*].into()
         }
 
-        /// The code of a report of the spec.
+        /// Returns the code of a report, if the spec has it.
         fn code_of(report: &AnyReport) -> Option<u16> {
             match report {
                 $(AnyReport::$report(_) => Some(<fc_generated::$report as Report>::CODE),)*
@@ -130,7 +130,7 @@ macro_rules! count_reports {
 }
 for_each_report!(count_reports);
 
-/// Waits until every report has come once.
+/// Waits until every report has arrived once.
 async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault> {
     let mut missing = report_codes();
     while !missing.is_empty() {
@@ -154,8 +154,8 @@ async fn receive_all(reports: &mut Reports, tour: &mut Tour) -> Result<(), Fault
     Ok(())
 }
 
-/// Waits for the picture that the call for a map image has ordered, and skips frames of other streams. Its digest has
-/// been verified by the time it is here.
+/// Waits for the picture that the map image call ordered, and skips frames of other streams. The
+/// client has already verified its digest.
 async fn receive_picture(data: &DataConnection<Fc>, tour: &mut Tour) -> Result<(), Fault> {
     let picture = async {
         loop {

@@ -1,5 +1,5 @@
-//! A connection from its beginning to its end: the robot goes away while it carries out a command,
-//! comes back, and the app finds out what has become of it. The guide of this name tells the story.
+//! A connection from start to end. The robot goes away while it carries out a command and comes
+//! back, and the app finds out what happened. The guide of the same name explains it.
 //!
 //! ```text
 //! cargo run --example connection
@@ -40,7 +40,7 @@ async fn connect(port: u16) -> Result<Client, Fault> {
 
 // #region refresh
 /// 每次连上都重新查询状态，直到连接永久关闭。
-/// Asks for the state with each connection, until the connection has ended for good.
+/// Queries the state again after each connect, until the connection is closed for good.
 async fn follow(client: Client, asked: Arc<Notify>) {
     let mut states = client.states();
     while let Some(state) = states.recv().await {
@@ -57,7 +57,7 @@ async fn follow(client: Client, asked: Arc<Notify>) {
                 asked.notify_one();
             }
             // 界面上可以显示原因 `why`。
-            // An app shows its user `why`.
+            // A user interface can show the reason `why`.
             ConnectionState::Connecting { .. } => {}
             ConnectionState::Closed { connects, .. } => {
                 println!("app: closed after {connects} connections");
@@ -69,7 +69,7 @@ async fn follow(client: Client, asked: Arc<Notify>) {
 
 // #region lost
 /// 运动指令只发送一次。结果未知时不重发，先查询状态。
-/// A motion command is sent once. If its outcome is unknown, ask for the state instead of resending.
+/// A motion command is sent only once. If the outcome is unknown, query the state, do not resend.
 async fn start(client: &Client) -> Result<(), CallError> {
     match client
         .start_recharge(&StartRechargeRequest::default())
@@ -87,7 +87,8 @@ async fn start(client: &Client) -> Result<(), CallError> {
 
 // #region repeat
 /// 读取类指令断线后自动重发，在超时之内等到新的连接。这里改为不重发。
-/// A read is resent after a loss and waits for the new connection within its timeout; not this one.
+/// After a loss, a read command is resent and waits for the new connection within its timeout. This
+/// call is not resent.
 async fn once(client: &Client) -> Result<(), CallError> {
     let options = CallOptions {
         timeout: Some(Duration::from_secs(1)),
@@ -102,7 +103,7 @@ async fn once(client: &Client) -> Result<(), CallError> {
 }
 // #endregion repeat
 
-/// Never finishes starting to recharge, and tells where it stands.
+/// A robot that never finishes `start_recharge`, but reports its state.
 struct Busy {
     started: Arc<Notify>,
 }
@@ -157,7 +158,8 @@ async fn robot(port: u16) -> Result<Robot, Fault> {
 impl Robot {
     // #region shutdown
     /// 停止接受连接和请求，正在处理的请求最多再等 `grace`，之后断开。
-    /// Takes no more connections and requests; what is being handled may take `grace` longer.
+    /// Accepts no more connections and requests. Requests in progress get at most `grace`, then the
+    /// connections are closed.
     async fn stop(self, grace: Duration) -> Result<(), Fault> {
         self.handle.shutdown(grace).await;
         self.running.await?;
@@ -175,7 +177,7 @@ async fn main() -> Result<(), Fault> {
     let following = tokio::spawn(follow(client.clone(), Arc::clone(&asked)));
     asked.notified().await;
 
-    // The robot goes away while it is at it.
+    // The robot goes away while it carries out the command.
     let started = Arc::clone(&first.started);
     let goes = async {
         started.notified().await;

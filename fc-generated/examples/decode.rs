@@ -1,4 +1,4 @@
-//! Reads captured bytes as hexadecimal and says what each frame is, and what is wrong with it.
+//! Reads captured bytes in hexadecimal, and prints each frame with its errors.
 //!
 //! ```text
 //! echo FC AA 01 … | cargo run --example decode
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             Ok(None) => break,
             // 长度可信的坏帧会被跳过，后面的帧照常解析。
-            // A bad frame whose length can be trusted is skipped; those behind it are read.
+            // A bad frame with a trustworthy length is skipped, and the next frames are read.
             Err(error) => {
                 println!("{}: {error}", error.name());
                 if error.is_fatal() {
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 // #endregion decode
 
-/// Which operation, which side of it, and the id that ties both sides together.
+/// Returns the operation, its side, and the id that ties both sides together.
 fn title(id: FrameId) -> String {
     let name = OPERATIONS
         .iter()
@@ -59,7 +59,7 @@ fn title(id: FrameId) -> String {
     format!("0x{:04X} {name} {side}, msgId {}", id.code, id.id)
 }
 
-/// Whether the spec's types read the body.
+/// Reads the body with the types of the spec. Returns `ok` or the error.
 fn verdict(id: FrameId, body: &[u8]) -> String {
     let Some(operation) = OPERATIONS
         .iter()
@@ -78,7 +78,7 @@ fn verdict(id: FrameId, body: &[u8]) -> String {
     }
 }
 
-/// Hex digits with anything between them that is none.
+/// Returns the bytes of the hex digits in `text`, which may have other characters between them.
 fn bytes(text: &str) -> Result<Vec<u8>, Box<dyn Error>> {
     let digits: Vec<u32> = text
         .chars()

@@ -1,11 +1,11 @@
-//! An app for trying out a connection under trouble that somebody else makes: reads on while the
-//! connection is cut, gives calls up, and calls on while the robot ends.
+//! An app that tests its connection while someone else disturbs it. It reads while the connection
+//! is cut, gives calls up, and keeps calling while the robot ends.
 //!
 //! ```text
 //! cargo run --example drill -- --command-port PORT
 //! ```
 //!
-//! It prints a line when a part begins, for the one who makes the trouble, and one when it has ended.
+//! It prints a line when each part begins, so that the disturbance can start, and one when it ends.
 
 #![allow(clippy::print_stdout, reason = "an example talks to its reader")]
 
@@ -26,9 +26,9 @@ Usage: drill [--host 127.0.0.1] [--command-port PORT] [--gzip-from BYTES]
 
 From `reading` on the connection may be cut; `calling` asks for the robot to be ended.";
 
-/// Calls in flight at a time.
+/// Number of calls in flight at a time.
 const AT_ONCE: usize = 64;
-/// Reads that are to be answered though the connection is cut.
+/// Number of reads. All must be answered although the connection is cut.
 const READS: usize = 1000;
 
 #[tokio::main(flavor = "current_thread")]
@@ -45,7 +45,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     give_up(&client).await?;
     println!("given up: {AT_ONCE}, and the next one answered");
 
-    // Another one, which does not come back: that the robot has ended ends its calls.
+    // This client does not reconnect, so its calls end when the robot ends.
     let client = Client::connect(args.client().reconnect(None)).await?;
     println!("calling");
     let answered = call_to_the_end(&client).await?;
@@ -53,7 +53,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Each call is a read, so it is sent again after a loss, and every single one is answered.
+/// Each call is a read. It is resent after a loss, so every call is answered.
 async fn read(client: &Client) -> Result<(), CallError> {
     let left = Cell::new(READS);
     let one_after_another = async || {
@@ -67,7 +67,7 @@ async fn read(client: &Client) -> Result<(), CallError> {
     ends.into_iter().collect()
 }
 
-/// Sends calls and drops them before an answer can have come; the connection serves on.
+/// Sends calls and drops them before a response can arrive. The connection keeps working.
 async fn give_up(client: &Client) -> Result<(), CallError> {
     let request = GetRobotSnRequest::example();
     let mut calls: Vec<_> = (0..AT_ONCE)
@@ -75,7 +75,7 @@ async fn give_up(client: &Client) -> Result<(), CallError> {
         .collect();
     std::future::poll_fn(|context| {
         for call in &mut calls {
-            // Whatever has come of it, nobody is interested any more.
+            // The call is given up, so its result does not matter.
             let _ = call.as_mut().poll(context);
         }
         Poll::Ready(())
@@ -85,8 +85,8 @@ async fn give_up(client: &Client) -> Result<(), CallError> {
     client.get_robot_sn(&request).await.map(drop)
 }
 
-/// Calls until the robot has gone, and tells how many were answered. Every call has an end, and the end of the last ones says that
-/// the connection was lost.
+/// Calls until the robot has gone, and returns the number of answered calls. Every call ends, and
+/// the last ones report that the connection was lost.
 async fn call_to_the_end(client: &Client) -> Result<usize, CallError> {
     let answered = Cell::new(0);
     let until_it_ends = async || loop {

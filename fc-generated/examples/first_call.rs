@@ -1,5 +1,5 @@
-//! The first call, from both ends: a robot that has one command so far, and an app that makes
-//! the call and takes a report. They meet on loopback; the guide of this name tells the story.
+//! The first call, from both sides. A robot has one command so far, and an app calls it and
+//! receives a report. They connect over loopback. The guide of the same name explains it.
 //!
 //! ```text
 //! cargo run --example first_call
@@ -22,7 +22,7 @@ type Fault = Box<dyn Error + Send + Sync>;
 
 // #region robot
 /// 目前只实现 `get_robot_sn`，其余指令以“未实现”拒绝。
-/// Implements `get_robot_sn` so far; all other commands are refused as not implemented.
+/// Implements only `get_robot_sn` so far. All other commands are refused as not implemented.
 struct MyRobot;
 
 impl PartialRobot for MyRobot {
@@ -32,7 +32,7 @@ impl PartialRobot for MyRobot {
         _request: GetRobotSnRequest,
     ) -> Result<GetRobotSnResponse, Refusal> {
         // 其余字段先用规范中的示例。
-        // The other keys are those of the spec's example for now.
+        // The other fields come from the spec's example for now.
         let mut response = GetRobotSnResponse::example();
         response.data.robot_sn = "100132007654321".into();
         Ok(response)
@@ -43,7 +43,7 @@ impl PartialRobot for MyRobot {
 // #region serve
 async fn robot() -> Result<Server<Fc>, Fault> {
     // 端口 0：由系统分配。不写就是协议规定的端口。
-    // Port 0 is any that is free; without it, the ports of the protocol.
+    // Port 0: the system assigns a free port. The default is the protocol's port.
     let config = ServerConfig::new()
         .address(Ipv4Addr::LOCALHOST)
         .command_port(0)
@@ -57,7 +57,7 @@ async fn report(reporter: &Reporter) -> Result<(), Fault> {
     let mut report = RechargeProgress::example();
     report.data.recharge_status = RechargeStatus::AtUndockPoint;
     // 等到每个 app 应答，或重发次数用完。
-    // Waits until every app has acknowledged it, or the repetitions are used up.
+    // Waits until every app has acknowledged the report, or the retries are used up.
     let acknowledgements = reporter.recharge_progress(Audience::All, &report).await?;
     println!("robot: {} app has acknowledged", acknowledgements.len());
     Ok(())

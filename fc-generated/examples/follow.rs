@@ -1,5 +1,5 @@
-//! A command followed from its answer to its end: the robot returns to its charging dock and reports each step, and the
-//! app follows. They meet on loopback.
+//! Follows a command from its response to its end. The robot returns to its charging dock and
+//! reports each step, and the app follows. They connect over loopback.
 //!
 //! ```text
 //! cargo run --example follow
@@ -22,7 +22,7 @@ use tokio::sync::Notify;
 
 type Fault = Box<dyn Error + Send + Sync>;
 
-/// A robot that sets off when it is asked to.
+/// A robot that accepts `start_recharge` and wakes `drive`.
 struct Docking(Arc<Notify>);
 
 impl PartialRobot for Docking {
@@ -36,7 +36,7 @@ impl PartialRobot for Docking {
     }
 }
 
-/// Drives to the dock once it is asked to, and fails there.
+/// Waits for the command, reports the way to the dock, and fails there.
 async fn drive(asked: &Notify, reporter: &Reporter) -> Result<(), Fault> {
     asked.notified().await;
     let mut report = RechargeProgress::example();
@@ -51,7 +51,7 @@ async fn drive(asked: &Notify, reporter: &Reporter) -> Result<(), Fault> {
 
 // #region follow
 /// 一条上报最多等多久；由 app 自己决定。
-/// How long the app waits for a report; that is for it to decide.
+/// Longest wait for a report. Each app chooses its own.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 async fn recharge(client: &Client) -> Result<(), Fault> {

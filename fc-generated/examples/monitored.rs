@@ -1,5 +1,5 @@
-//! A robot that Prometheus can watch: it answers with the examples in the spec, and says how it fares
-//! at a port of its own.
+//! A robot that Prometheus can monitor. It answers with the examples in the spec, and exports
+//! metrics at a separate port.
 //!
 //! ```text
 //! cargo run --example monitored --features metrics -- --metrics-port 9656
@@ -41,7 +41,7 @@ async fn main() -> ExitCode {
 const SECONDS: [f64; 10] = [0.000_1, 0.001, 0.005, 0.01, 0.05, 0.1, 0.5, 1.0, 2.5, 3.0];
 
 /// 先安装记录器，再建立机器人：机器人建立时登记它的指标。
-/// Install the recorder before the robot is made: that is when it registers its metrics.
+/// Install the recorder before you create the robot, which registers its metrics when created.
 fn recorder() -> Result<PrometheusHandle, Fault> {
     let durations = Matcher::Suffix("_duration_seconds".to_owned());
     let builder = PrometheusBuilder::new().set_buckets_for_metric(durations, &SECONDS)?;
@@ -51,7 +51,7 @@ fn recorder() -> Result<PrometheusHandle, Fault> {
 
 // #region allow
 /// 本机和车内网段可以调用一切；显示屏所在的网段只能查询。
-/// This machine and the robot's own network may call everything, the network of displays only ask.
+/// This machine and the robot's network may call everything. The display network may only query.
 fn allowed() -> Result<ServerConfig, NetworkError> {
     Ok(ServerConfig::new()
         .allow("127.0.0.0/8".parse()?, Effect::ALL)
@@ -93,10 +93,11 @@ async fn run(args: Args) -> Result<(), Fault> {
 
 // #region export
 /// 一次应答一个请求，请求慢了就放弃：读取指标不能影响机器人。
-/// Answers one request at a time and waits for none that is slow: watching costs the robot nothing.
+/// Serves one request at a time and drops slow ones: reading metrics must not affect the robot.
 async fn export(pages: &TcpListener, metrics: &PrometheusHandle) {
     // 记录的耗时要定期归并，没有人读取时也是如此，否则会一直占用内存。
-    // Times that were recorded are gathered now and then, also if nobody asks: they would pile up.
+    // Recorded times must be merged regularly, even if they are never read. Otherwise they use up
+    // memory.
     let mut upkeep = interval(Duration::from_secs(5));
     loop {
         tokio::select! {
@@ -113,7 +114,7 @@ async fn export(pages: &TcpListener, metrics: &PrometheusHandle) {
 }
 
 /// HTTP，只有一个页面。
-/// HTTP with one page.
+/// HTTP with a single page.
 async fn page(mut stream: TcpStream, metrics: &PrometheusHandle) -> io::Result<()> {
     let mut request = Vec::new();
     while !request.ends_with(b"\r\n\r\n") && request.len() < 8192 {

@@ -1,12 +1,12 @@
-//! What the runtime reports about itself: an app and a robot under the user's own `tracing` subscriber,
-//! and the counters of both sides.
+//! Shows the events, durations and counters of the runtime. An app and a robot run with the user's
+//! `tracing` subscriber.
 //!
 //! ```text
 //! cargo run --example observe
 //! ```
 //!
-//! Prints one line per event of a call that fails, then how long calls and handlers took, by name,
-//! then every counter. Bodies are never part of spans, events or `Debug` forms.
+//! It prints one line per event of a call that fails, then the durations of calls and handlers by
+//! name, then every counter. Bodies are never part of spans, events or `Debug` forms.
 
 mod support;
 
@@ -53,7 +53,7 @@ async fn run(latencies: &Latencies) -> Result<(), Fault> {
     for _ in 0..1000 {
         app.get_robot_sn(&GetRobotSnRequest::default()).await?;
     }
-    // A code that no robot knows is refused, and counted.
+    // An unknown code is refused and counted.
     app.connection().call_raw(0xFFFF, b"{}").await?;
     robot
         .push(Audience::All, &ObstacleAnnouncement::example())
@@ -70,7 +70,7 @@ async fn run(latencies: &Latencies) -> Result<(), Fault> {
     Ok(())
 }
 
-/// How long spans of one kind and name took.
+/// Durations of the spans of one kind and name.
 #[derive(Default)]
 struct Taken {
     count: u32,
@@ -82,7 +82,7 @@ struct Taken {
 #[derive(Clone, Default)]
 struct Latencies(Arc<Mutex<BTreeMap<(&'static str, String), Taken>>>);
 
-/// Kept with a span: when it began and the name of its operation.
+/// The data of a span: its start and the name of its operation.
 struct Begun(Instant, String);
 
 impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Latencies {
@@ -138,7 +138,7 @@ impl Latencies {
     }
 }
 
-/// The value of one field, as text.
+/// The name of a field, and its value as a string.
 struct FieldNamed(&'static str, String);
 
 impl Visit for FieldNamed {

@@ -1,6 +1,6 @@
-//! A robot to try an app against, and nothing else: answers every command with the spec's example,
-//! also those that would move a real one, pushes every report once to each app, and sends the picture of a map over the data port to any app that asks for
-//! one.
+//! A robot for testing apps, and nothing else. It answers every command with the spec's example,
+//! also commands that would move a real robot. It pushes every report once to each app. It sends
+//! the picture of a map over the data port to any app that asks for one.
 //!
 //! ```text
 //! cargo run --example robot -- --command-port 0 --data-port 0
@@ -24,7 +24,7 @@ use support::stop::Stop;
 use support::{Args, Fault};
 use tokio::sync::mpsc;
 
-/// What is being handled when the robot is asked to end may take so long.
+/// Time limit for requests in progress when the robot is asked to end.
 const GRACE: Duration = Duration::from_secs(5);
 
 const USAGE: &str = "\
@@ -61,7 +61,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     }
     let (asked, requests) = mpsc::channel(256);
     let service = Attentive {
-        // There is nothing here that could move.
+        // This robot has nothing that could move.
         examples: RobotService::new(ExampleRobot {
             pretend_motion: true,
         }),
@@ -70,7 +70,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     };
     let picture = picture(args.picture_scale);
     let server = Server::bind(config, service).await?;
-    // Before anybody knows where it listens: who asks it to end at once is heard, too.
+    // This is before the ports are printed, so that an immediate signal is not lost.
     let mut stop = Stop::listen()?;
     println!(
         "commands {} data {}",
@@ -87,7 +87,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     }
     tokio::select! {
         () = handle.shutdown(GRACE) => {}
-        // Whoever asks twice does not want to wait.
+        // A second signal means that the user does not want to wait.
         signal = stop.asked() => {
             tracing::warn!("{signal} again: ending at once");
             handle.shutdown(Duration::ZERO).await;
@@ -99,7 +99,7 @@ async fn run(args: Args) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Answers with the examples, and tells of every request.
+/// Answers with the examples, and passes on the context of every request.
 struct Attentive {
     examples: RobotService<ExampleRobot>,
     asked: mpsc::Sender<Context<Fc>>,
@@ -110,7 +110,7 @@ impl Service<Fc> for Attentive {
     fn call(&self, request: Request<'_, Fc>) -> Handling {
         let (connection, code, id) = (request.context().connection, request.code(), request.id());
         tracing::debug!(%connection, code, id, "request");
-        // Whoever asks faster than this robot can think gets his answer all the same.
+        // If the channel is full, the app still gets its response.
         let _ = self.asked.try_send(request.context());
         if self.delay.is_zero() {
             return self.examples.call(request);
@@ -123,7 +123,7 @@ impl Service<Fc> for Attentive {
     }
 }
 
-/// The spec's example of the response, as [`ExampleRobot`] gives it, for a command of any code.
+/// Returns the spec's example of the response, as [`ExampleRobot`] does, for a command of any code.
 fn example(request: &RawRequest) -> Result<RawAnswer, Refusal> {
     let operation = OPERATIONS
         .iter()
@@ -137,7 +137,8 @@ fn example(request: &RawRequest) -> Result<RawAnswer, Refusal> {
         .map_err(Refusal::invalid::<Fc>)
 }
 
-/// Does what the robot does of its own accord. Returns when the last app has left, if `once`.
+/// Pushes all reports to each new app, and sends pictures on request. Returns when the last app has
+/// left, if `once`.
 async fn attend(
     handle: &ServerHandle<Fc>,
     mut requests: mpsc::Receiver<Context<Fc>>,
@@ -179,7 +180,7 @@ macro_rules! push_all {
 }
 for_each_report!(push_all);
 
-/// Prints what has become of a report.
+/// Prints the outcome of a report.
 fn show(name: &str, pushed: Result<Vec<Acknowledgement>, PushError>) {
     match pushed {
         Ok(acknowledgements) => {
@@ -195,7 +196,7 @@ fn show(name: &str, pushed: Result<Vec<Acknowledgement>, PushError>) {
     }
 }
 
-/// Sends a picture to the app that has asked for one, under the id of its request.
+/// Sends a picture to the app that has asked for one, with the id of its request.
 async fn send_picture(handle: ServerHandle<Fc>, request: Context<Fc>, picture: Arc<[u8]>) {
     let app = Audience::One(request.connection);
     for _ in 0..40 {
@@ -222,7 +223,7 @@ async fn send_picture(handle: ServerHandle<Fc>, request: Context<Fc>, picture: A
     println!("picture: {} has no data connection", request.connection);
 }
 
-/// A small map as a portable graymap: a room with a wall around it.
+/// Returns a small map as a portable graymap: a room with a wall around it.
 fn picture(scale: usize) -> Arc<[u8]> {
     let (width, height) = (64 * scale, 48 * scale);
     let mut out = format!("P5 {width} {height} 255\n").into_bytes();

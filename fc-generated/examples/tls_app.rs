@@ -1,4 +1,4 @@
-//! An app that talks TLS to the robot `tls_robot`, with a certificate of its own.
+//! An app that connects over TLS to the robot `tls_robot`, with its own certificate.
 //!
 //! ```text
 //! cargo run --example tls_app -- --certificates FOLDER --host robot.local --command-port PORT
@@ -42,7 +42,7 @@ async fn run(args: Args) -> Result<(), Fault> {
 
 // #region connect
 /// 断线后重连时，TLS 握手也会重新进行。
-/// After a loss, the handshake is made again with the connection.
+/// After a loss, each reconnect repeats the TLS handshake.
 async fn connect(files: &Files, host: String, port: u16) -> Result<Client, Fault> {
     let tls = TlsConnector::from(files.client()?);
     let name = ServerName::try_from(host.clone())?;

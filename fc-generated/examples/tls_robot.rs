@@ -1,4 +1,4 @@
-//! A robot that talks TLS alone, to apps with a certificate. `tls_app` is one.
+//! A robot that accepts only TLS, from apps with a certificate, such as `tls_app`.
 //!
 //! ```text
 //! cargo run --example tls_robot -- --certificates FOLDER
@@ -49,7 +49,8 @@ async fn run(args: Args) -> Result<(), Fault> {
 
     // #region serve
     // 不加密的端口只对本机开放，端口号任意；对外的端口由下面的循环接受连接。
-    // The plain ports are open to this machine alone; the loops below accept at those for others.
+    // The plain ports are open only to this machine. The loops below accept connections from
+    // others.
     let config = ServerConfig::new()
         .address(Ipv4Addr::LOCALHOST)
         .command_port(0)
@@ -77,8 +78,8 @@ async fn run(args: Args) -> Result<(), Fault> {
 
 // #region accept
 /// 握手由运行库进行：有时限，计入连接数和每个地址的上限，`allow` 之外的地址不会开始握手。
-/// The runtime waits for the handshake: it has a time limit and counts as a connection of its address,
-/// and one from outside of `allow` is never begun.
+/// The runtime runs the handshake: it has a time limit, and counts towards the limits on
+/// connections and per address. Addresses outside of `allow` cannot start one.
 async fn accept(listener: &TcpListener, tls: &TlsAcceptor, robot: &ServerHandle<Fc>, data: bool) {
     loop {
         let accepted: std::io::Result<(TcpStream, _)> = listener.accept().await;

@@ -1,4 +1,4 @@
-//! What the examples share: their command line, their log, and a table whose columns line up.
+//! Shared code of the examples: the command line, the log, and a table with aligned columns.
 
 #![allow(dead_code, reason = "each example uses a part of it")]
 
@@ -13,10 +13,10 @@ use tracing::level_filters::LevelFilter;
 use tracing_subscriber::EnvFilter;
 use unicode_width::UnicodeWidthStr;
 
-/// Whatever keeps an example from going on.
+/// Any error that ends an example.
 pub type Fault = Box<dyn std::error::Error + Send + Sync>;
 
-/// Runs an example as its command line says; a wrong one ends it with 2, a fault with 1.
+/// Runs an example with its command line. Exits with 2 if that is wrong, and with 1 after an error.
 pub async fn main(usage: &str, run: impl AsyncFnOnce(Args) -> Result<(), Fault>) -> ExitCode {
     match Args::parse(usage) {
         Ok(Some(args)) => exit(run(args).await),
@@ -28,7 +28,7 @@ pub async fn main(usage: &str, run: impl AsyncFnOnce(Args) -> Result<(), Fault>)
     }
 }
 
-/// Says what went wrong, if anything did.
+/// Prints the error, if there is one, and returns the exit code.
 pub fn exit(result: Result<(), Fault>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -41,7 +41,7 @@ pub fn exit(result: Result<(), Fault>) -> ExitCode {
 
 // #region log
 /// 日志写到 stderr：级别由 `RUST_LOG` 决定，缺省为 info。
-/// Writes the log to stderr: what `RUST_LOG` asks for, or info.
+/// Writes the log to stderr. `RUST_LOG` sets the level, which is info by default.
 pub fn log() -> Result<(), Fault> {
     let filter = EnvFilter::builder()
         .with_default_directive(LevelFilter::INFO.into())
@@ -53,27 +53,27 @@ pub fn log() -> Result<(), Fault> {
 }
 // #endregion log
 
-/// The command line: which robot, at which ports.
+/// The options of the command line.
 pub struct Args {
     /// Address of the robot.
     pub host: String,
-    /// Port of commands; the spec's where none is given.
+    /// Port for commands. The default is the spec's port.
     pub command_port: Option<u16>,
-    /// Port of streams; the spec's where none is given.
+    /// Port for streams. The default is the spec's port.
     pub data_port: Option<u16>,
-    /// Port of metrics, on this machine alone.
+    /// Port for metrics, on this machine only.
     pub metrics_port: u16,
     /// Folder with certificates.
     pub certificates: PathBuf,
-    /// Whether the robot ends once its app has left.
+    /// `true` if the robot ends once its app has left.
     pub once: bool,
-    /// How long the robot takes over each command.
+    /// The time that the robot takes for each command.
     pub delay: Duration,
-    /// What is compressed; the default where none is given.
+    /// Compression settings.
     pub gzip: Gzip,
-    /// How many times as wide and high the robot's picture is.
+    /// Factor for the width and height of the robot's picture.
     pub picture_scale: usize,
-    /// In which language it speaks.
+    /// Language of the output.
     pub lang: Lang,
 }
 
@@ -85,7 +85,7 @@ pub enum Lang {
 }
 
 impl Lang {
-    /// That of the environment, as POSIX has it.
+    /// Returns the language of the environment, from the POSIX variables.
     fn of_environment() -> Self {
         let mut values = ["LC_ALL", "LC_MESSAGES", "LANG"]
             .map(std::env::var)
@@ -96,7 +96,7 @@ impl Lang {
         }
     }
 
-    /// The text of this language.
+    /// Returns the value for this language.
     pub fn pick<T>(self, zh: T, en: T) -> T {
         match self {
             Self::Zh => zh,
@@ -106,7 +106,7 @@ impl Lang {
 }
 
 impl Args {
-    /// The robot and the ports as settings of a client.
+    /// Returns client settings with the robot's address and ports.
     pub fn client(&self) -> ClientConfig {
         let mut config = ClientConfig::new().host(&self.host).gzip(self.gzip);
         if let Some(port) = self.command_port {
@@ -118,7 +118,7 @@ impl Args {
         config
     }
 
-    /// Reads the command line; `None` if it asked for `usage` and has been answered.
+    /// Reads the command line. Returns `None` if it asked for help, after printing `usage`.
     pub fn parse(usage: &str) -> Result<Option<Self>, String> {
         let mut args = Self {
             host: "127.0.0.1".to_owned(),
@@ -170,8 +170,7 @@ impl Args {
     }
 }
 
-/// Rows of cells, each column as wide as its widest cell on a terminal, where Chinese takes two
-/// columns a character.
+/// Rows of cells in aligned columns. A Chinese character takes two columns on a terminal.
 #[derive(Default)]
 pub struct Table(Vec<Vec<String>>);
 

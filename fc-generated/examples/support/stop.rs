@@ -1,4 +1,4 @@
-//! When somebody asks a program to end.
+//! Signals that ask a program to end.
 
 use std::io;
 
@@ -11,7 +11,7 @@ pub struct Stop {
 
 #[cfg(unix)]
 impl Stop {
-    /// From here on, neither signal ends the program by itself.
+    /// Starts to listen. From now on, neither signal ends the program.
     pub fn listen() -> io::Result<Self> {
         use tokio::signal::unix::{SignalKind, signal};
         Ok(Self {
@@ -20,7 +20,7 @@ impl Stop {
         })
     }
 
-    /// Resolves to the signal's name, once for each time that one comes.
+    /// Waits for the next signal and returns its name.
     pub async fn asked(&mut self) -> &'static str {
         tokio::select! {
             _ = self.interrupt.recv() => "SIGINT",
@@ -35,12 +35,12 @@ pub struct Stop(tokio::signal::windows::CtrlC);
 
 #[cfg(windows)]
 impl Stop {
-    /// From here on, Ctrl-C does not end the program by itself.
+    /// Starts to listen. From now on, Ctrl-C does not end the program.
     pub fn listen() -> io::Result<Self> {
         tokio::signal::windows::ctrl_c().map(Self)
     }
 
-    /// Resolves to the signal's name, once for each time that it comes.
+    /// Waits for the next signal and returns its name.
     pub async fn asked(&mut self) -> &'static str {
         self.0.recv().await;
         "Ctrl-C"

@@ -1,4 +1,5 @@
-//! Certificates of both sides: each has one of its own, and trusts those that one authority has signed.
+//! The certificates of both sides. Each side has one, and trusts those that one authority has
+//! signed.
 
 #![allow(dead_code, reason = "each example uses a part of it")]
 
@@ -10,9 +11,9 @@ use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer};
 use tokio_rustls::rustls::server::WebPkiClientVerifier;
 use tokio_rustls::rustls::{ClientConfig, RootCertStore, ServerConfig};
 
-/// PEM files: `ca.pem`, and what the program shows to its peer.
+/// PEM files: `ca.pem`, and the program's certificate and key.
 pub struct Files {
-    /// Folder with all of them.
+    /// Folder of all files.
     pub folder: PathBuf,
     /// `robot` for `robot.pem` and `robot.key`.
     pub name: &'static str,
@@ -21,7 +22,7 @@ pub struct Files {
 // #region certificates
 impl Files {
     /// 机器人一侧：app 没有由 ca.pem 签发的证书，握手就失败。
-    /// The robot's side: without a certificate signed by ca.pem, an app's handshake fails.
+    /// The robot's side: without a certificate signed by ca.pem, the handshake of an app fails.
     pub fn server(&self) -> Result<Arc<ServerConfig>, Fault> {
         let apps = WebPkiClientVerifier::builder(Arc::new(self.authority()?)).build()?;
         let (chain, key) = self.own()?;
@@ -32,7 +33,8 @@ impl Files {
     }
 
     /// app 一侧：机器人的证书要由 ca.pem 签发，并写明所连接的主机名。
-    /// The app's side: the robot's certificate is signed by ca.pem and names the host it is asked for.
+    /// The app's side: the robot's certificate must be signed by ca.pem and name the host that the
+    /// app connects to.
     pub fn client(&self) -> Result<Arc<ClientConfig>, Fault> {
         let (chain, key) = self.own()?;
         let config = ClientConfig::builder()
