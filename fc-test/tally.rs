@@ -1,24 +1,24 @@
-//! What the conformance table is told: how many of the shared cases have held. A test includes this file as a module.
+//! Counts how many of the shared cases have held, for the conformance table. A test includes this file as a module.
 
 use std::env;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::thread;
 
-/// Counts the cases of a kind that have held, and says so at its end, also where that is a panic: a line `KIND NUMBER` behind
-/// what is in the file that `FC_CONFORMANCE` names. Without one, nobody is told.
+/// Counts the cases of one kind that have held. When dropped, even by a panic, it appends a line `KIND NUMBER` to the
+/// file in `FC_CONFORMANCE`. Without that variable, it writes nothing.
 pub struct Tally {
     kind: &'static str,
     held: usize,
 }
 
 impl Tally {
-    /// Of a kind of `conformance/README.md`.
+    /// Starts a count for a kind of `conformance/README.md`.
     pub fn of(kind: &'static str) -> Self {
         Self { kind, held: 0 }
     }
 
-    /// Once all that was asked of so many cases has held.
+    /// Adds cases that have passed all of their checks.
     pub fn held(&mut self, cases: usize) {
         self.held += cases;
     }
@@ -30,10 +30,10 @@ impl Drop for Tally {
             return;
         };
         let line = format!("{} {}\n", self.kind, self.held);
-        // At once, so that lines of tests that run beside each other do not mix.
+        // A single write, so that lines of parallel tests do not mix.
         let mut file = OpenOptions::new().create(true).append(true).open(path);
         let written = (file.as_mut()).is_ok_and(|file| file.write_all(line.as_bytes()).is_ok());
-        // A panic within a panic would hide the first one.
+        // A second panic would hide the first one.
         assert!(written || thread::panicking(), "{line}");
     }
 }

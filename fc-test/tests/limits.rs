@@ -1,4 +1,4 @@
-//! A test that does not end fails and says so, and no test of the runtime is without.
+//! A test that does not end fails with a message. Every test of the runtime has a time limit.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
