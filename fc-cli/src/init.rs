@@ -68,7 +68,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         .into());
     }
     let manifest = manifest(options.runtime.as_deref())?;
-    refuse_what_is_there(directory)?;
+    refuse_existing_files(directory)?;
     let files = FILES.map(|(path, [zh, en])| (path, both(zh, en)));
     let others = [(".gitignore", IGNORED), ("Cargo.toml", manifest.as_str())];
     for (path, text) in files.into_iter().chain(others) {
@@ -91,7 +91,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 }
 
 /// Refuses a directory that contains anything except `.git`.
-fn refuse_what_is_there(directory: &Path) -> Result<(), Failure> {
+fn refuse_existing_files(directory: &Path) -> Result<(), Failure> {
     let entries = match fs::read_dir(directory) {
         Ok(entries) => entries,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),

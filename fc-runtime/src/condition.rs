@@ -186,7 +186,7 @@ mod tests {
     }]);
 
     #[fc_test::test]
-    fn a_field_is_there_exactly_where_its_condition_holds() {
+    fn a_field_exists_exactly_if_its_condition_holds() {
         for (value, condition, asked, kind) in [
             (Some(1), WHEN, true, None),
             (None, WHEN, true, Some(ConditionErrorKind::Missing)),
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[fc_test::test]
-    fn values_are_compared_by_what_they_are() {
+    fn values_are_compared_by_their_type() {
         assert!(3_u8.is_among(&[1, 3]) && !(-3_i64).is_among(&[3]));
         assert!(true.is_among(&[true]) && !true.is_among(&[]));
         assert!("a".to_owned().is_among(&["b", "a"]) && !String::new().is_among(&["a"]));

@@ -51,7 +51,7 @@ fn object_of(member: &str, length: usize) -> String {
 }
 
 #[fc_test::test]
-fn unknown_keys_cost_what_their_text_does() {
+fn unknown_keys_cost_their_text() {
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     for member in [
         "\"a\":[]",

@@ -26,7 +26,7 @@ async fn test_that_never_wakes_is_stopped() {
 
 #[fc_test::test(within = SHORT)]
 #[should_panic(expected = "not over after 10ms")]
-async fn nor_what_never_yields() {
+async fn a_task_that_never_yields_fails() {
     loop {
         park();
     }

@@ -4,7 +4,7 @@
 use fc_bench_report::packages;
 
 #[test]
-fn pages_show_what_the_packages_have_measured() {
+fn pages_show_the_figures_of_the_packages() {
     let reports = packages::read().expect("reports");
     assert!(reports.len() > 1);
     for (path, language) in packages::pages() {
@@ -15,7 +15,7 @@ fn pages_show_what_the_packages_have_measured() {
 }
 
 #[test]
-fn a_page_keeps_what_stands_around_the_packages() {
+fn a_page_keeps_its_other_text() {
     let (old, new) = (packages::block(&[], fc_bench_report::Language::English), "new\n");
     let page = format!("before\n{old}after\n");
     assert_eq!(packages::replaced(&page, new).expect("a part"), "before\nnew\nafter\n");

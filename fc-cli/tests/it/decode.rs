@@ -26,7 +26,7 @@ fn encoded(project: &Project, args: &[&str]) -> String {
 }
 
 #[test]
-fn decode_reads_what_encode_prints() {
+fn decode_reads_the_output_of_encode() {
     let project = Project::new();
     let frame = encoded(&project, &["set_level", "--id", "7"]);
     let tree = piped(&project, &["decode"], frame.as_bytes()).expect(0);

@@ -72,7 +72,7 @@ fn change(project: &Project, file: &str, from: &str, to: &str) {
 }
 
 #[test]
-fn a_flipped_byte_is_reported_with_whom_it_breaks() {
+fn changed_values_are_reported_with_the_broken_sides() {
     for (file, from, to, rule) in FLIPS {
         let project = project();
         change(&project, file, from, to);

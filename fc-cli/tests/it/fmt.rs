@@ -89,7 +89,7 @@ fn a_check_names_the_files_and_writes_nothing() {
 }
 
 #[test]
-fn a_diff_shows_what_would_change_and_writes_nothing() {
+fn diff_shows_the_changes_and_writes_nothing() {
     let project = project();
     let before = project.files("spec");
     let run = project.fc(&["fmt", "--diff"]).expect(0);

@@ -37,7 +37,7 @@ fn says(text: &str, all: &[&str], none: &[&str]) {
 }
 
 #[test]
-fn a_change_is_told_in_words_with_whom_it_breaks() {
+fn changes_are_described_with_the_sides_they_break() {
     let project = project();
     change(&project, LAMP, "code: 0x0104", "code: 0x0109");
     let said = git(&project, &["diff"]);

@@ -43,7 +43,7 @@ fn project() -> Project {
 }
 
 #[test]
-fn questions_are_listed_by_what_they_hold_up() {
+fn questions_are_grouped_by_their_consequence() {
     let run = project().fc(&["questions", "--group", "asked"]).expect(0);
     let expected = "\
 No code: cannot be called (1)

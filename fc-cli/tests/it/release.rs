@@ -463,7 +463,7 @@ fn changelog_has_the_part_of_an_audience() {
 }
 
 #[test]
-fn without_a_release_there_is_nothing_to_compare_with() {
+fn first_release_has_no_comparison() {
     let project = Project::new();
     for command in ["diff", "changelog"] {
         let run = project.fc(&[command]).expect(2);

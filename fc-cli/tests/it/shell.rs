@@ -127,7 +127,7 @@ fn quiet_prints_errors_and_results() {
 }
 
 #[test]
-fn warnings_change_the_status_for_who_denies_them() {
+fn denied_warnings_change_the_status() {
     let project = Project::new();
     let deny = ["check", "--deny", "warnings"];
     project.fc(&deny).expect(0);

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_it_does_not_understand() {
+    fn refuses_unknown_lines() {
         for text in [
             "",
             "<<<<<<< HEAD",

@@ -26,7 +26,7 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
 
 /// Every name that a file imports from the runtime is declared there.
 #[test]
-fn what_is_imported_is_there() {
+fn every_import_exists() {
     let place = root().join(Product::Kotlin.usual_place());
     let runtime: String = (sources(&place.join("runtime/src/main")).into_iter())
         .map(|(_, text)| text)

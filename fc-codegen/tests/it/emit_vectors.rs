@@ -186,7 +186,7 @@ fn vectors_are_the_same_each_time() {
 }
 
 #[test]
-fn every_vector_is_what_it_says() {
+fn every_vector_matches_its_description() {
     for (root, layout) in [(project(), FC), (fixture(), LAMP)] {
         let model = model(&root);
         for artifact in vectors::emit(&model, &Targets::default()) {
@@ -213,7 +213,7 @@ const BODIES: &str = "fc-generated/vectors/bodies.json";
 /// A vector has an error of JSON syntax exactly if another reader of the grammar refuses its body. Every rule has
 /// accepted and refused vectors.
 #[test]
-fn bodies_are_what_they_say() {
+fn bodies_match_their_description() {
     const OF_THE_TEXT: [&str; 3] = ["not_utf8", "bad_json", "not_an_object"];
     let artifacts = vectors::emit(&model(&fixture()), &Targets::default());
     let file: Value = serde_json::from_str(artifact(&artifacts, BODIES)).expect("JSON");

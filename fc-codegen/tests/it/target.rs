@@ -55,7 +55,7 @@ fn docs_are_made_in_the_languages_asked_for() {
 
 /// Comments link to the pages in their own languages. They have no links if the project has no pages.
 #[test]
-fn comments_name_the_docs_where_they_are() {
+fn comments_name_the_docs_directory() {
     let comments = |yaml: &str| {
         let targets = Targets::read(yaml).expect("sound");
         let targets = targets.only(&["rust".to_owned()]).expect("there");
@@ -86,7 +86,7 @@ fn comments_name_the_docs_where_they_are() {
 /// Each entity has an ID type if the target requests it, and only then. Pages that are generated alone show the same
 /// code.
 #[test]
-fn ids_have_types_where_they_are_asked_for() {
+fn ids_have_types_if_requested() {
     let all = |yaml: &str, only: &[&str]| {
         let only: Vec<_> = only.iter().map(ToString::to_string).collect();
         let targets = Targets::read(yaml).expect("sound");

@@ -139,7 +139,7 @@ fn an_error_names_wire_keys_and_values() {
 
 /// Received messages are accepted unchanged, and sent again unchanged.
 #[test]
-fn reading_and_writing_ask_nothing() {
+fn reading_and_writing_ignore_conditions() {
     for text in [
         r#"{"speed":1.5,"workMode":1,"armed":true,"place":"in","type":-1,"label":""}"#,
         r#"{"workMode":2,"armed":true,"place":"out","type":0,"label":"x"}"#,

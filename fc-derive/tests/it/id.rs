@@ -48,7 +48,7 @@ fn read<T: fc_runtime::Message>(text: &str) -> Result<T, BodyError> {
 
 /// Sent and rejected values are the same as without ids, word for word.
 #[test]
-fn an_id_travels_as_what_it_holds() {
+fn an_id_is_sent_as_its_value() {
     for text in [
         r#"{"stationId":7,"next":"4","others":[1,2],"guide":"anna","more":1}"#,
         r#"{"stationId":7,"next":4,"others":[]}"#,

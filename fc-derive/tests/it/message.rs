@@ -270,7 +270,7 @@ fn other_keys_are_read_and_not_written() {
 }
 
 #[test]
-fn lenient_fields_take_what_they_should() {
+fn lenient_fields_accept_their_forms() {
     for (text, count) in [
         ("5", 5),
         ("5.0", 5),
@@ -449,7 +449,7 @@ fn constraints_hold_on_reading_and_on_checking() {
 }
 
 #[test]
-fn a_field_takes_only_what_it_names() {
+fn a_field_accepts_only_its_named_values() {
     for text in [
         "{}",
         r#"{"kind":0,"mode":"dusk","slope":-3,"kinds":[0,16,0]}"#,
@@ -482,7 +482,7 @@ fn a_field_takes_only_what_it_names() {
 }
 
 #[test]
-fn errors_say_where() {
+fn errors_have_a_path() {
     let text = r#"{"stationId":3,"x":"0.5","name":"A","serial":"123456789012345","list":[{"level":1},{"level":"2"}]}"#;
     let error = read::<Station>(text).unwrap_err();
     assert_eq!(

@@ -86,7 +86,7 @@ fn read<T: FromJson>(text: &str) -> Result<T, BodyError> {
 }
 
 #[test]
-fn an_open_enum_keeps_what_it_does_not_know() {
+fn an_open_enum_keeps_unknown_values() {
     for (text, level) in [
         ("-3", Level::Low),
         ("16", Level::High),
@@ -115,7 +115,7 @@ fn an_open_enum_keeps_what_it_does_not_know() {
 }
 
 #[test]
-fn a_closed_enum_refuses_what_it_does_not_know() {
+fn a_closed_enum_refuses_unknown_values() {
     assert_eq!(read::<Gate>("18446744073709551615"), Ok(Gate::Open));
     assert_eq!(Gate::try_from(0), Ok(Gate::Shut));
     assert_eq!(read::<Gate>("1").unwrap_err().name(), "unknown_value");

@@ -92,7 +92,7 @@ fn other_spellings_are_refused() {
 }
 
 #[test]
-fn quirks_let_in_what_they_say() {
+fn quirks_accept_their_form() {
     for (text, armed) in [("null", None), ("[]", None), ("1", Some(true))] {
         let read = read(&format!(r#"{{"on":0,"armed":{text}}}"#)).unwrap();
         assert_eq!(read.armed, armed, "{text}");

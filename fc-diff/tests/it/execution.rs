@@ -315,7 +315,7 @@ fn broken(from: &Reflector<'_>, to: &Reflector<'_>, names: &Names, bytes: &[u8])
 
 #[test]
 #[ignore = "takes long"]
-fn the_rules_agree_with_what_becomes_of_frames() {
+fn the_rules_agree_with_real_frames() {
     let base = base();
     let old = model(&base).expect("the spec");
     let old_reflector = Reflector::new(&old);

@@ -86,7 +86,7 @@ async fn omitted_and_unknown_commands_are_distinguished() {
 
 /// A robot without motion must not report the success of a motion command.
 #[tokio::test]
-async fn the_example_robot_refuses_what_may_move() {
+async fn the_example_robot_refuses_motion() {
     let (client, _robot) = connected(RobotService::new(ExampleRobot::default())).await;
     for Outcome {
         name,
@@ -104,7 +104,7 @@ async fn the_example_robot_refuses_what_may_move() {
 }
 
 #[tokio::test]
-async fn the_example_robot_pretends_where_it_is_told_to() {
+async fn the_example_robot_pretends_if_told_to() {
     let robot = ExampleRobot {
         pretend_motion: true,
     };

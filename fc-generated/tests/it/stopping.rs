@@ -23,7 +23,7 @@ fn command() -> (u16, &'static [u8]) {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]
-async fn sigterm_lets_it_answer_what_it_has_begun() {
+async fn sigterm_waits_for_running_calls() {
     let mut robot = Robot::start(&robot(), &["--delay", "1500"]);
     let [port, _] = robot.ports;
     let config = ClientConfig::new().host("127.0.0.1").command_port(port);

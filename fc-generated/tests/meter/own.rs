@@ -315,7 +315,7 @@ async fn a_refusal_is_read_from_its_own_keys() {
 
 /// An absent key stays absent, and `…_or_default` returns its default.
 #[test]
-fn a_default_is_what_absence_means() {
+fn an_absent_field_has_its_default() {
     assert_eq!(SetTariffRequest::DEFAULT_PRICE, 100);
     assert_eq!(SetTariffRequest::DEFAULT_NOTE, "无");
     let request = SetTariffRequest::new(Band::Day);

@@ -82,7 +82,7 @@ pub fn frame(random: &mut Random, seeds: &Seeds, reflector: &Reflector<'_>) -> V
     };
     match random.below(16) {
         0 => change_the_header(random, &mut bytes),
-        1 => change_what_is_sent(random, &mut bytes),
+        1 => change_sent_bytes(random, &mut bytes),
         _ => {}
     }
     bytes
@@ -123,7 +123,7 @@ fn change_the_header(random: &mut Random, bytes: &mut [u8]) {
 }
 
 /// Changes the data as sent and writes a header whose length and digest fit the new data.
-fn change_what_is_sent(random: &mut Random, bytes: &mut Vec<u8>) {
+fn change_sent_bytes(random: &mut Random, bytes: &mut Vec<u8>) {
     let Some(header) = FrameHeader::read(bytes) else {
         return;
     };

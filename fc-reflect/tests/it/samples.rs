@@ -42,7 +42,7 @@ fn sample<'m>(
 }
 
 #[test]
-fn every_sample_is_read_as_what_it_was_made_of() {
+fn every_sample_reads_back() {
     for model in models() {
         let reflector = Reflector::new(&model);
         let mut count = 0;

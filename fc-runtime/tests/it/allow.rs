@@ -245,7 +245,7 @@ async fn address_with_read_only_cannot_move() {
 }
 
 #[fc_test::test]
-async fn the_smallest_network_counts_whatever_the_order() {
+async fn the_smallest_network_counts_in_any_order() {
     let _alone = alone();
     let wide = (network("0.0.0.0/0"), vec![Effect::Read]);
     let narrow = (network("10.0.0.0/8"), Effect::ALL.to_vec());

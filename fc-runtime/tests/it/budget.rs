@@ -117,7 +117,7 @@ async fn one_host_cannot_hold_more_than_the_budget() {
     }
 }
 
-async fn who_holds_most_goes(port: Port) {
+async fn largest_connection_is_closed(port: Port) {
     let log = Log::listen(Level::WARN);
     let robot = Robot::start(config(), service).await;
     let mut lesser = Vec::new();
@@ -149,12 +149,12 @@ async fn who_holds_most_goes(port: Port) {
 
 #[fc_test::test]
 async fn command_connection_with_most_memory_is_closed() {
-    who_holds_most_goes(Port::Command).await;
+    largest_connection_is_closed(Port::Command).await;
 }
 
 #[fc_test::test]
 async fn data_connection_with_most_memory_is_closed() {
-    who_holds_most_goes(Port::Data).await;
+    largest_connection_is_closed(Port::Data).await;
 }
 
 /// A connection to a silent app holds no memory. Otherwise many of them would use up the memory, and free and request
@@ -270,7 +270,7 @@ async fn a_handler_that_runs_on_keeps_its_charge() {
 }
 
 #[fc_test::test]
-async fn lists_count_with_what_they_become() {
+async fn lists_count_with_their_final_size() {
     #[derive(Clone, Debug, PartialEq, fc_derive::Message, fc_derive::Command)]
     #[fc(code = 0x0103, name = "lists", effect = "read", response = common::Done)]
     struct Lists {

@@ -257,7 +257,7 @@ async fn an_app_that_does_not_receive_does_not_collect() {
 }
 
 #[fc_test::test(start_paused = true)]
-async fn one_who_only_sends_hears_of_a_loss() {
+async fn a_sending_app_notices_a_loss() {
     let (data, robot, _kept) = data_of_raw(10_000).await;
     data.send(1, 1, b"x").await.unwrap();
     drop(robot);

@@ -315,7 +315,7 @@ async fn a_call_that_is_refused_is_not_followed() {
 
 /// A report without states is followed until the follower is dropped.
 #[fc_test::test]
-async fn without_states_nothing_is_the_end() {
+async fn without_states_no_report_ends_it() {
     let robot = Robot::start(loopback(), service).await;
     let app = robot.connect().await;
     let mut following = app.call(&GO).follow::<Moved>().await.unwrap();

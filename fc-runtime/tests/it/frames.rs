@@ -103,7 +103,7 @@ fn ten_thousand_frames_are_the_same_in_any_split() {
 }
 
 #[fc_test::test]
-fn bodies_taken_out_leave_the_next_frame_where_it_is() {
+fn a_taken_body_keeps_the_next_frame() {
     let mut stream = Vec::new();
     let mut encoder = Encoder::<Toy>::new().gzip(Gzip {
         from_bytes: 100_000,

@@ -197,7 +197,7 @@ async fn bodies_are_never_logged() {
 }
 
 #[fc_test::test]
-async fn spans_tell_what_a_call_was() {
+async fn spans_describe_a_call() {
     let _alone = ALONE.lock().await;
     let notes = Notes::default();
     let _guard = tracing::subscriber::set_default(notes.clone());

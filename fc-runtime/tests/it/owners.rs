@@ -81,7 +81,7 @@ async fn apps_at_one_address_get_only_their_streams() {
 }
 
 #[fc_test::test]
-async fn leftover_data_connection_gets_nothing_of_the_next() {
+async fn leftover_data_connection_gets_no_later_frames() {
     let robot = Robot::start(loopback(), service).await;
     let first = app(&robot, 1);
     let mut left_behind = data(&robot, 1);

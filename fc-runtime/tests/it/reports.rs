@@ -260,7 +260,7 @@ async fn receiver_gets_every_report_since_its_start() {
 
 /// A receiver that is not read costs the others nothing, and learns what it has missed.
 #[fc_test::test(start_paused = true)]
-async fn a_receiver_that_is_full_misses_what_others_take() {
+async fn a_full_receiver_misses_reports() {
     let limits = Limits {
         queued_reports: 2,
         ..LIMITS

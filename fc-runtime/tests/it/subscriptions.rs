@@ -54,7 +54,7 @@ async fn each_stream_is_read_as_its_type() {
 
 /// The robot reads the content of an app's stream as its type.
 #[fc_test::test]
-async fn a_robot_reads_what_an_app_sends() {
+async fn a_robot_reads_streams_of_apps() {
     let robot = Robot::start(loopback(), service).await;
     let mut streams = robot.handle.streams();
     let data = connect(&robot).await;

@@ -284,7 +284,7 @@ fn codes_of_others_stay_taken() {
 }
 
 #[test]
-fn a_part_of_a_part_is_what_both_have() {
+fn a_part_of_a_part_is_their_intersection() {
     let both = part("product_app")
         .for_audience("debugging_app")
         .expect("both");

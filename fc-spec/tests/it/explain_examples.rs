@@ -56,18 +56,7 @@ fn put(text: &str, path: &[&str], example: &str) -> Option<String> {
                 .then(|| format!("{text}{example}"));
         }
         let new = entries(example);
-        let role = |lines: &str| {
-            let (_, rest) = lines.split_once("role: ")?;
-            rest.split([',', ' ']).next().map(str::to_owned)
-        };
-        let stays = |(key, lines): &&(String, String)| {
-            !new.iter().any(|(other, others)| {
-                other == key
-                    || (!lines.contains('\n')
-                        && role(lines) == role(others)
-                        && role(lines).is_some())
-            })
-        };
+        let stays = |(key, _): &&(String, String)| !new.iter().any(|(other, _)| other == key);
         let kept: String = all
             .iter()
             .filter(stays)
@@ -85,10 +74,9 @@ fn put(text: &str, path: &[&str], example: &str) -> Option<String> {
             continue;
         };
         // A mapping on one line, `key: { a: 1 }`, cannot take the lines of an example.
-        let (head, body) = match head.split_once(": {") {
-            Some(_) => return None,
-            None => (head, body),
-        };
+        if head.contains(": {") {
+            return None;
+        }
         let depth = body.len() - body.trim_start_matches(' ').len();
         let inner: String = body
             .lines()

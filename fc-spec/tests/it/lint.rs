@@ -131,7 +131,7 @@ fn no_rule_objects_to_the_small_spec() {
 }
 
 #[test]
-fn every_rule_finds_what_it_is_for() {
+fn every_rule_finds_its_case() {
     let mut actual = String::new();
     let mut seen = BTreeSet::new();
     for change in changes() {
@@ -195,7 +195,7 @@ fn house(yaml: &str) -> Vec<String> {
 
 /// Each rule in `house.yaml` and `shared.yaml` lists in its English text the names that it finds.
 #[test]
-fn rules_of_the_project_find_what_they_say() {
+fn rules_of_the_project_find_their_case() {
     let yaml = file("house.yaml");
     let found = house(&yaml);
     let mut expected = Vec::new();

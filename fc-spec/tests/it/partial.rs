@@ -252,7 +252,7 @@ fn every_node_of_a_model_has_its_place() {
 }
 
 #[test]
-fn every_place_holds_what_it_is_of() {
+fn every_place_contains_its_item() {
     let (sources, ..) = loaded(&[]);
     for (item, place) in definitions(&sources).iter() {
         let says = sources.slice(place.key);
@@ -266,7 +266,7 @@ fn every_place_holds_what_it_is_of() {
 }
 
 #[test]
-fn names_are_found_alone_and_with_what_holds_them() {
+fn names_are_found_alone_and_with_their_owner() {
     let (sources, ..) = loaded(&[("      x: {", "      # Of the map.\n        x: {")]);
     let places = definitions(&sources);
     let found = |name: &str| -> Vec<String> {

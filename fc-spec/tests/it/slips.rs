@@ -120,7 +120,7 @@ fn each_file(mut visit: impl FnMut(&Path, &str)) {
 }
 
 #[test]
-fn every_slip_is_named_for_what_it_is() {
+fn every_slip_has_the_right_error() {
     each_file(|path, text| {
         let mut actual = String::new();
         for slip in Slip::all(text) {

@@ -18,7 +18,7 @@ fn specs() -> [Sources; 2] {
 }
 
 #[test]
-fn every_name_leads_to_what_it_names() {
+fn every_name_leads_to_its_definition() {
     for sources in specs() {
         let (places, uses) = (definitions(&sources), references(&sources));
         assert!(uses.iter().count() > 0);
@@ -73,7 +73,7 @@ fn no_offset_of_a_file_is_too_odd() {
 
 /// A file changes, becomes invalid YAML, and gets its old text back. Each time, the updated index equals a new one.
 #[test]
-fn index_of_files_that_stay_finds_what_a_new_one_does() {
+fn a_kept_index_equals_a_new_one() {
     for sources in specs() {
         let mut index = Index::new(Trees::new(&sources));
         let files: Vec<_> = sources.iter().map(|(_, file)| file.clone()).collect();

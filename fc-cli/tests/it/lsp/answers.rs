@@ -111,7 +111,7 @@ fn hover_explains_in_both_languages() {
 }
 
 #[test]
-fn a_name_leads_to_what_it_names() {
+fn a_name_leads_to_its_definition() {
     let project = project();
     let mut editor = editor(&project);
     for (path, marked, target) in [

@@ -132,7 +132,7 @@ fn columns_are_counted_as_the_client_counts_them() {
 }
 
 #[test]
-fn a_text_that_is_laid_out_is_what_fc_fmt_makes_of_it() {
+fn formatting_in_the_editor_equals_fmt() {
     let project = project();
     let mut editor = Editor::start(&project);
     for path in [TYPES, LAMP] {

@@ -92,7 +92,7 @@ fn last_of_many_changes_is_published() {
 }
 
 #[test]
-fn without_a_project_there_is_nothing_to_say() {
+fn without_a_project_there_are_no_answers() {
     let project = Project::empty();
     project.write("notes.yaml", "a: 1\n");
     let mut editor = Editor::start(&project);

@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comment_ends_where_it_is_told_to() {
+    fn comment_text_cannot_end_the_comment() {
         assert_eq!(prose("a */ b /* [c]"), r"a * / b / * \[c\]");
         assert_eq!(closed("a */ b"), "a * / b");
     }

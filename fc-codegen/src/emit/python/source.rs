@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn a_docstring_holds_what_the_spec_says() {
+    fn a_docstring_contains_the_text_of_the_spec() {
         let shown = |text: &'static str| {
             let mut docs = Docs::default();
             docs.paragraph(text);

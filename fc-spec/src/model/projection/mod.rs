@@ -103,12 +103,12 @@ impl Model {
         for operation in &mut model.operations {
             operation::keep_states(operation, &model.types);
         }
-        model.leave_out_what_nothing_uses();
+        model.leave_out_unused_types();
         model.link().map_err(ProjectionError::Unlinked)
     }
 
     /// Removes unused groups, entities, coordinate systems and stores. Removes answers, questions and conflicts about removed things.
-    fn leave_out_what_nothing_uses(&mut self) {
+    fn leave_out_unused_types(&mut self) {
         self.retain_named();
         let asked: HashSet<String> = ids(&self.answers).collect();
         let (types, operations) = (&self.types, &self.operations);

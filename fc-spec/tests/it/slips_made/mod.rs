@@ -217,7 +217,7 @@ fn the_spec_has_no_fault_before() {
 
 #[test]
 #[ignore = "takes long"]
-fn a_slip_is_one_fault_where_it_is() {
+fn a_slip_is_one_error_at_its_place() {
     let Corpus {
         slips,
         judged,

@@ -167,7 +167,7 @@ fn invisible_characters_are_spelled() {
 }
 
 #[test]
-fn targets_have_nothing_that_ends_a_link() {
+fn targets_cannot_end_a_link() {
     check(
         Slot::Target,
         &[
