@@ -1,6 +1,7 @@
 //! The memory of `decode` is bounded, however long and hostile the input is.
 //!
-//! A program of its own, because it measures the allocations of the whole process. Its only test runs each input in turn.
+//! It is a separate program, because it measures the allocations of the whole process. Its only test runs each input in
+//! turn.
 
 #![allow(
     clippy::expect_used,

@@ -16,7 +16,7 @@ use crate::product::{Artifact, Product};
 use crate::target::{TargetError, Targets, part};
 use fc_spec::model::Model;
 
-/// The artifacts of all products that a project has, each made of what its audience has.
+/// Returns the artifacts of all products of a project, each with the content for its audience.
 ///
 /// # Errors
 ///

@@ -205,7 +205,7 @@ fn inherent(choice: &OpenEnum<'_>) -> TokenStream {
             /// Every value of the spec, in its order.
             pub const VALUES: &'static [Self] = &[#(#names),*];
 
-            /// Returns the value as it is sent.
+            /// Returns the value on the wire.
             #[must_use]
             pub #constant fn wire(&self) -> #wire {
                 match self {

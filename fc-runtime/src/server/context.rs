@@ -61,7 +61,7 @@ impl<P: Protocol> Context<P> {
     ///         () = arrive() => Ok(()),
     ///         () = context.abandoned() => {
     ///             stop_motors().await;
-    ///             // Nobody hears of it.
+    ///             // The caller is gone, so this result is dropped.
     ///             Err(Refusal::timeout::<P>())
     ///         }
     ///     }

@@ -1,18 +1,21 @@
-//! Random schedules of faults between apps and a robot, each from one seed. The network and the time are simulated;
-//! client and server are the real ones.
+//! Random schedules of faults between apps and a robot, each from one seed. Network and time are simulated. Client and
+//! server are the real ones.
 //!
-//! `CHAOS_SCHEDULES=10000 cargo test -p fc-runtime --release --test network -- --nocapture` runs more
-//! of them; `CHAOS_SEED=…` runs one again and prints what happened. With `--ignored`, the same over
-//! real sockets and in real time.
+//! `CHAOS_SCHEDULES=10000 cargo test -p fc-runtime --release --test network -- --nocapture` runs more schedules.
+//! `CHAOS_SEED=…` repeats one and prints its events. With `--ignored`, the test uses real sockets and real time.
 //!
-//! The test was verified by breaking the engine in each of these ways: acknowledging without remembering, queueing a
-//! report twice, acknowledging invalid reports, identifying reports by id alone, treating missing acknowledgements as
-//! received. Further: repeating every command after a loss, executing twice, matching responses without id, code or
-//! kind, swapping responses, never timing out, losing calls, no limit to calls or reports, no abort after the grace
-//! period. At the robot: dropping unsent data at the end of the app's direction, after a wrong head or a stalled frame,
-//! forgetting handlers then, waiting for ever for the rest of a frame, not catching, answering or counting a panic. At
-//! the app: dropping responses before garbage or before the end, waiting for ever for the rest of a frame or for a
-//! robot that does not read. The test failed for each.
+//! The test failed with each of these changes:
+//!
+//! - Reports: acknowledge without remembering, queue a report twice, or acknowledge invalid reports.
+//! - Reports: identify them by id alone, or treat missing acknowledgements as received.
+//! - Calls: repeat every command after a loss, or execute one twice.
+//! - Calls: match responses without id, code or kind, or swap responses.
+//! - Calls: never time out, lose a call, or have no limit of calls or reports.
+//! - Robot: drop unsent data after the end of the app's direction, a wrong head or a stalled frame.
+//! - Robot: forget running handlers in these cases, or never abort after the grace period.
+//! - Robot: do not catch, answer or count a panic.
+//! - App: drop responses before garbage or before the end, or wait without limit for a robot that does not read.
+//! - Both: wait without limit for the rest of a frame.
 
 #![allow(
     clippy::unwrap_used,

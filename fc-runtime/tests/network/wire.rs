@@ -1,6 +1,8 @@
-//! A simulated TCP connection with all possible faults: it splits and joins, delays, breaks inside a frame, ends in one
-//! direction alone, or swallows bytes. It also simulates odd peers: they repeat, hold back and swap frames, repeat old
-//! responses, change one field of a response, send garbage, stop inside a frame, fall silent, and read nothing.
+//! A simulated TCP connection with all possible faults. It splits and joins, delays, breaks inside a frame, ends in one
+//! direction only, or swallows bytes.
+//!
+//! It also simulates odd peers. They repeat, hold back and swap frames, repeat old responses and change one field of a
+//! response. They send garbage, stop inside a frame, fall silent, and read nothing.
 
 use super::garbage::{self, Garbage};
 use super::lane::{Lane, Old, WINDOW, Weather};

@@ -1,14 +1,19 @@
-//! An hour of a robot and an app that are left alone, in simulated time: restarts in order and out of
-//! it, a network that goes away, wrong versions, a slow app, no room, and a robot that does not come
-//! back.
+//! A robot and an app run alone for an hour of simulated time. Both restart, in order and out of order. The network
+//! fails, versions differ, an app is slow, the robot has no room, and at last the robot does not return.
 //!
-//! After each event the app must be served again soon, and its states must show the event. No command may be executed
-//! twice, no report delivered twice, and at the end no resources may be left. The log of both at INFO and above is
-//! compared with `log.txt`; a reader must understand the hour from it. `cargo test -p fc-runtime --test restarts --
-//! --nocapture` prints it with the time of each line; `FC_WRITE_LOG=1` writes the file again.
+//! After each event, the robot must serve the app again soon, and the app's states must show the event. No command may be
+//! executed twice, and no report delivered twice. At the end, no resources may be left.
 //!
-//! The test failed with each of these changes: no line suppressed, each failed attempt logged, motions repeated after a
-//! loss, waits of three times the length, missing states, connections that stay in the robot's table.
+//! The log of both at INFO and above is compared with `log.txt`. A reader must understand the hour from it. `cargo test
+//! -p fc-runtime --test restarts -- --nocapture` prints it with the time of each line. `FC_WRITE_LOG=1` writes the file
+//! again.
+//!
+//! The test failed with each of these changes:
+//!
+//! - No line is suppressed, or each failed attempt is logged.
+//! - Motions are repeated after a loss.
+//! - Waits have three times the length.
+//! - States are missing, or connections stay in the robot's table.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-"""Measures the package beside JSON and MD5 alone, and beside gRPC."""
+"""Compares the package with JSON and MD5 alone, and with gRPC."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ fn around_time(limit: Duration) -> [(Duration, bool); 2] {
     [(limit.saturating_sub(ms), true), (limit + ms, false)]
 }
 
-/// Sends a request with a break at byte `at`, and says whether it was answered.
+/// Sends a request with a pause at byte `at`. Returns `true` if the robot answers.
 async fn answered(robot: &Robot, at: usize, wait: Duration) -> bool {
     let bytes = frame(command(Echo::CODE, 1), br#"{"text":"x"}"#);
     let mut app = robot.raw();

@@ -10,7 +10,7 @@ fn hex(bytes: &[u8], between: &str) -> String {
     digits.join(between)
 }
 
-/// Returns a dump with a line per 16 bytes, of which `line` writes the position, the bytes and the characters.
+/// Returns a dump with a line per 16 bytes. `line` writes the position, the bytes and the characters of each.
 fn dump(bytes: &[u8], line: impl Fn(usize, &[u8]) -> String) -> String {
     let mut text = String::new();
     for (number, bytes) in bytes.chunks(16).enumerate() {
