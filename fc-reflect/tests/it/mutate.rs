@@ -8,7 +8,7 @@ use fc_runtime::digest::{DigestAlgorithm as _, Md5};
 use fc_runtime::{Header as _, Protocol as _};
 use serde_json::Value;
 
-/// A generator of random numbers (SplitMix64). The same seed gives the same numbers on every machine.
+/// A generator of random numbers (`SplitMix64`). The same seed gives the same numbers on every machine.
 pub struct Random(pub u64);
 
 impl Random {
