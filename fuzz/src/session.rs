@@ -257,9 +257,6 @@ fn due(session: &mut Session<u32>, model: &mut Model, now: Instant) {
                 );
                 open.left -= 1;
                 open.due = now + open.policy.timeout;
-                if open.policy.timeout.is_zero() && open.left > 0 {
-                    continue;
-                }
             }
             Due::Expired(frame, token) => {
                 let open = model.end(token);
