@@ -4,8 +4,7 @@ use fc_reflect::sample::constraint::on_the_wire;
 use fc_spec::model::{
     EnumType, Field, Model, Number, StructRef, StructType, Text, Type, TypeShape, Value, WireForm,
 };
-use fc_spec::text;
-use std::fmt;
+use fc_spec::{text, text_error};
 
 /// The largest index of a list in a key.
 const MOST_ITEMS: usize = 4096;
@@ -25,13 +24,7 @@ impl ArgumentError {
     }
 }
 
-impl fmt::Display for ArgumentError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.en)
-    }
-}
-
-impl std::error::Error for ArgumentError {}
+text_error!(ArgumentError);
 
 /// Reads the values of arguments by the types of a model.
 #[derive(Clone, Copy, Debug)]

@@ -5,11 +5,11 @@ use crate::facts;
 use fc_reflect::{Frame, Reflector};
 use fc_runtime::AckPolicy;
 use fc_spec::model::Text;
-use fc_spec::text;
+use fc_spec::{text, text_error};
 use std::collections::VecDeque;
+use std::io;
 use std::sync::Arc;
 use std::time::Duration;
-use std::{fmt, io};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, timeout, timeout_at};
 
@@ -77,13 +77,7 @@ impl ClientError {
     }
 }
 
-impl fmt::Display for ClientError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for ClientError {}
+text_error!(ClientError);
 
 /// A client of a robot.
 pub struct Client<'m> {

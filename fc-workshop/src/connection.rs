@@ -6,11 +6,11 @@ use fc_reflect::{Direction, Frame, FrameError, FrameId, Packing, Reflector};
 use fc_runtime::digest::{DigestAlgorithm as _, Md5};
 use fc_runtime::{AckPolicy, Busy, Due, Incoming, Session};
 use fc_spec::model::ResultRole;
-use std::fmt;
 use std::future::pending;
 use std::io;
 use std::sync::Arc;
 use std::time::Instant;
+use thiserror::Error;
 use tokio::io::{
     AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, ReadHalf, WriteHalf,
 };
@@ -247,24 +247,15 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
 }
 
 /// The reason why a request was not sent.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub enum NotSent {
     /// Too many requests are in flight.
+    #[error("{0}")]
     Busy(Busy),
     /// The frame is too long.
+    #[error("{0}")]
     Frame(FrameError),
 }
-
-impl fmt::Display for NotSent {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Busy(error) => error.fmt(f),
-            Self::Frame(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for NotSent {}
 
 /// Returns the id as the session of the runtime has it.
 fn in_session(id: FrameId) -> fc_runtime::FrameId {

@@ -1,10 +1,10 @@
 //! The listening sockets of a robot's ports.
 
 use fc_spec::model::Text;
-use fc_spec::text;
+use fc_spec::{text, text_error};
+use std::io;
 use std::net::SocketAddr;
 use std::time::Duration;
-use std::{fmt, io};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::sleep;
 
@@ -41,13 +41,7 @@ impl ListenError {
     }
 }
 
-impl fmt::Display for ListenError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text().en)
-    }
-}
-
-impl std::error::Error for ListenError {}
+text_error!(ListenError);
 
 /// The listening sockets of the command port and the data port.
 #[derive(Debug)]

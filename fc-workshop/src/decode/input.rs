@@ -6,8 +6,7 @@ use base64::alphabet;
 use base64::engine::DecodePaddingMode;
 use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
 use fc_spec::model::{Model, Text};
-use fc_spec::text;
-use std::fmt;
+use fc_spec::{text, text_error};
 
 /// A format of recorded bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,13 +53,7 @@ impl InputError {
     }
 }
 
-impl fmt::Display for InputError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.en)
-    }
-}
-
-impl std::error::Error for InputError {}
+text_error!(InputError);
 
 impl Format {
     /// Returns the format of an input that begins with these bytes.

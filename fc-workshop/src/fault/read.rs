@@ -2,8 +2,7 @@
 
 use super::{Fault, FaultKind, When};
 use fc_spec::model::{Model, Text};
-use fc_spec::text;
-use std::fmt;
+use fc_spec::{text, text_error};
 use std::num::NonZeroU32;
 use std::time::Duration;
 
@@ -26,13 +25,7 @@ impl FaultError {
     }
 }
 
-impl fmt::Display for FaultError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.en)
-    }
-}
-
-impl std::error::Error for FaultError {}
+text_error!(FaultError);
 
 impl Fault {
     /// Reads a fault. Operations have the names of the model.
