@@ -92,14 +92,12 @@ impl Format {
 }
 
 /// Turns an input into the bytes that it represents, piece by piece.
-pub(super) struct Unpacker {
-    form: Form,
-}
-
-enum Form {
+pub(super) enum Unpacker {
     Hex(HexText),
+    /// The bytes themselves.
     Binary,
-    Base64 { kept: Vec<u8> },
+    /// The digits that wait for others.
+    Base64(Vec<u8>),
 }
 
 /// Padding is optional, because tools leave it out.
@@ -108,34 +106,15 @@ const LENIENT: GeneralPurposeConfig =
 const BASE64: GeneralPurpose = GeneralPurpose::new(&alphabet::STANDARD, LENIENT);
 
 impl Unpacker {
-    /// Creates an unpacker of hexadecimal text.
-    pub(super) fn hex() -> Self {
-        Self {
-            form: Form::Hex(HexText::default()),
-        }
-    }
-
-    /// Creates an unpacker of base64.
-    pub(super) fn base64() -> Self {
-        Self {
-            form: Form::Base64 { kept: Vec::new() },
-        }
-    }
-
-    /// Creates an unpacker that changes nothing.
-    pub(super) fn binary() -> Self {
-        Self { form: Form::Binary }
-    }
-
     /// Appends the bytes of the next part of the input to `out`.
     pub(super) fn push(&mut self, input: &[u8], out: &mut Vec<u8>) -> Result<(), InputError> {
-        match &mut self.form {
-            Form::Hex(dump) => dump.push(input, out),
-            Form::Binary => {
+        match self {
+            Self::Hex(dump) => dump.push(input, out),
+            Self::Binary => {
                 out.extend_from_slice(input);
                 Ok(())
             }
-            Form::Base64 { kept } => {
+            Self::Base64(kept) => {
                 for byte in input {
                     match byte {
                         b'-' => kept.push(b'+'),
@@ -152,10 +131,10 @@ impl Unpacker {
 
     /// Ends the input.
     pub(super) fn finish(&mut self, out: &mut Vec<u8>) -> Result<(), InputError> {
-        match &mut self.form {
-            Form::Hex(dump) => dump.finish(out),
-            Form::Binary => Ok(()),
-            Form::Base64 { kept } => {
+        match self {
+            Self::Hex(dump) => dump.finish(out),
+            Self::Binary => Ok(()),
+            Self::Base64(kept) => {
                 let all = kept.len();
                 decode_base64(kept, all, out)
             }

@@ -1,5 +1,6 @@
 //! Reads an input from its beginning to its end.
 
+use super::hex::HexText;
 use super::input::Unpacker;
 use super::{Decoder, Format, InputError, Record};
 use crate::capture::{self, CaptureError, Event, Flow, Ports, Seen};
@@ -12,7 +13,7 @@ use thiserror::Error;
 const CHUNK: usize = 64 << 10;
 
 /// The first bytes of an input, which show its format.
-const BEGINNING: usize = 64;
+const BEGINNING: u64 = 64;
 
 /// The reason why reading an input ended early.
 #[derive(Debug, Error)]
@@ -53,23 +54,19 @@ pub fn read<'m, R: Read + Send>(
         format,
         ports,
     } = source;
-    let mut beginning = vec![0; BEGINNING];
-    let mut filled = 0;
-    while filled < BEGINNING {
-        let read = some(&mut input, beginning.get_mut(filled..).unwrap_or_default())?;
-        filled += read;
-        if read == 0 {
-            break;
-        }
-    }
-    beginning.truncate(filled);
+    let mut beginning = Vec::new();
+    let read = (&mut input).take(BEGINNING).read_to_end(&mut beginning);
+    read.map_err(DecodeError::Read)?;
     let format = format.unwrap_or_else(|| Format::detect(reflector.model(), &beginning));
     let input = Cursor::new(beginning).chain(input);
     let mut decoder = Decoder::new(reflector);
     match format {
-        Format::Hex => read_bytes(&mut decoder, Unpacker::hex(), input, sink),
-        Format::Binary => read_bytes(&mut decoder, Unpacker::binary(), input, sink),
-        Format::Base64 => read_bytes(&mut decoder, Unpacker::base64(), input, sink),
+        Format::Hex => {
+            let unpacker = Unpacker::Hex(HexText::default());
+            read_bytes(&mut decoder, unpacker, input, sink)
+        }
+        Format::Binary => read_bytes(&mut decoder, Unpacker::Binary, input, sink),
+        Format::Base64 => read_bytes(&mut decoder, Unpacker::Base64(Vec::new()), input, sink),
         Format::Capture => {
             let read = capture::read_file(input, &ports, &mut receiver(&mut decoder, sink));
             captured(read, &ports)
