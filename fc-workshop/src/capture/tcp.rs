@@ -163,51 +163,49 @@ impl Flows {
 
     /// Passes on waiting bytes that are in order now, and gives up waiting beyond the limits.
     fn deliver(&mut self, flow: Flow, receiver: &mut Receiver<'_>) -> io::Result<()> {
-        loop {
-            let Some(state) = self.states.get_mut(&flow) else {
-                return Ok(());
-            };
-            let Some(first) = state.later.front() else {
-                break;
-            };
-            let ahead = distance(state.next, first.sequence);
-            if ahead > 0 {
-                let is_over = state.waiting > WAITING
-                    || state.later.len() > SEGMENTS
-                    || self.waiting > ALL_WAITING;
-                if !is_over {
-                    break;
-                }
-                state.next = first.sequence;
-                receiver(flow, Event::Missing(u64::from(ahead.unsigned_abs())))?;
-                continue;
-            }
-            self.pass(flow, receiver)?;
-        }
-        let Some(state) = self.states.get_mut(&flow) else {
-            return Ok(());
-        };
-        if state.later.is_empty() && state.end == Some(state.next) && !state.is_closed {
+        self.pass(flow, receiver, |state, first, waiting| {
+            distance(state.next, first.sequence) <= 0
+                || state.waiting > WAITING
+                || state.later.len() > SEGMENTS
+                || waiting > ALL_WAITING
+        })?;
+        if let Some(state) = self.states.get_mut(&flow)
+            && state.later.is_empty()
+            && state.end == Some(state.next)
+            && !state.is_closed
+        {
             state.is_closed = true;
             receiver(flow, Event::End)?;
         }
         Ok(())
     }
 
-    /// Passes on the first waiting segment, which is in order.
-    fn pass(&mut self, flow: Flow, receiver: &mut Receiver<'_>) -> io::Result<()> {
-        let Some(state) = self.states.get_mut(&flow) else {
-            return Ok(());
-        };
-        let Some(later) = state.later.pop_front() else {
-            return Ok(());
-        };
-        state.waiting -= later.bytes.len();
-        self.waiting -= later.bytes.len();
-        match state.fresh(later.sequence, &later.bytes) {
-            None | Some([]) => Ok(()),
-            Some(bytes) => receiver(flow, Event::Bytes(later.time, bytes)),
+    /// Passes on the first waiting segments while they are wanted, which the number of waiting bytes of all flows may
+    /// decide. The capture lacks the bytes before them.
+    fn pass(
+        &mut self,
+        flow: Flow,
+        receiver: &mut Receiver<'_>,
+        is_wanted: impl Fn(&State, &Later, usize) -> bool,
+    ) -> io::Result<()> {
+        while let Some(state) = self.states.get_mut(&flow)
+            && let Some(first) = state.later.front()
+            && is_wanted(state, first, self.waiting)
+            && let Some(later) = state.later.pop_front()
+        {
+            let ahead = distance(state.next, later.sequence);
+            if ahead > 0 {
+                state.next = later.sequence;
+                receiver(flow, Event::Missing(u64::from(ahead.unsigned_abs())))?;
+            }
+            state.waiting -= later.bytes.len();
+            self.waiting -= later.bytes.len();
+            match state.fresh(later.sequence, &later.bytes) {
+                None | Some([]) => {}
+                Some(bytes) => receiver(flow, Event::Bytes(later.time, bytes))?,
+            }
         }
+        Ok(())
     }
 
     /// Gives up waiting for bytes that the peer has acknowledged: the capture lacks them.
@@ -217,32 +215,14 @@ impl Flows {
         acknowledged: u32,
         receiver: &mut Receiver<'_>,
     ) -> io::Result<()> {
-        while let Some(state) = self.states.get_mut(&flow)
-            && let Some(first) = state.later.front()
-            && distance(first.sequence, acknowledged) > 0
-        {
-            let ahead = distance(state.next, first.sequence);
-            if ahead > 0 {
-                state.next = first.sequence;
-                receiver(flow, Event::Missing(u64::from(ahead.unsigned_abs())))?;
-            }
-            self.pass(flow, receiver)?;
-        }
-        Ok(())
+        self.pass(flow, receiver, |_, first, _| {
+            distance(first.sequence, acknowledged) > 0
+        })
     }
 
     /// Passes on all waiting bytes of a flow and ends it.
     fn close(&mut self, flow: Flow, receiver: &mut Receiver<'_>) -> io::Result<()> {
-        while let Some(state) = self.states.get_mut(&flow)
-            && let Some(first) = state.later.front()
-        {
-            let ahead = distance(state.next, first.sequence);
-            if ahead > 0 {
-                state.next = first.sequence;
-                receiver(flow, Event::Missing(u64::from(ahead.unsigned_abs())))?;
-            }
-            self.pass(flow, receiver)?;
-        }
+        self.pass(flow, receiver, |_, _, _| true)?;
         match self.states.remove(&flow) {
             Some(state) if !state.is_closed => receiver(flow, Event::End),
             _ => Ok(()),
