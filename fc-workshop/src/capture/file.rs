@@ -1,7 +1,7 @@
 //! Reads pcap and pcapng.
 
 use super::packet::{Link, Ports, segment};
-use super::tcp::Flows;
+use super::tcp::{Flows, Seen};
 use super::{CaptureError, Receiver};
 use pcap_parser::{Block, PcapBlockOwned, PcapError, create_reader};
 use std::io::{Cursor, ErrorKind, Read};
@@ -40,34 +40,19 @@ pub fn read(
     receiver: &mut Receiver<'_>,
 ) -> Result<Seen, CaptureError> {
     let mut reading = Reading {
-        ports,
-        flows: Flows::default(),
-        seen: Seen::default(),
+        flows: Flows::new(ports),
         link: None,
         is_nano: false,
         interfaces: Vec::new(),
     };
     let read = reading.blocks(input, receiver);
-    reading
-        .flows
-        .finish(receiver)
-        .map_err(CaptureError::Receiver)?;
-    read.map(|()| reading.seen)
-}
-
-/// The TCP segments of a capture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Seen {
-    /// Segments of connections with a wanted port.
-    pub wanted: u64,
-    /// Segments of other connections.
-    pub others: u64,
+    let seen = reading.flows.finish(receiver);
+    let seen = seen.map_err(CaptureError::Receiver)?;
+    read.map(|()| seen)
 }
 
 struct Reading<'p> {
-    ports: &'p Ports,
-    flows: Flows,
-    seen: Seen,
+    flows: Flows<'p>,
     /// The link of a pcap file.
     link: Option<Link>,
     /// `true` if a pcap file has times in nanoseconds.
@@ -169,15 +154,10 @@ impl Reading<'_> {
         packet: &[u8],
         receiver: &mut Receiver<'_>,
     ) -> std::io::Result<()> {
-        let Some(segment) = link.and_then(|link| segment(link, packet)) else {
-            return Ok(());
-        };
-        if !self.ports.include(segment.flow) {
-            self.seen.others += 1;
-            return Ok(());
+        match link.and_then(|link| segment(link, packet)) {
+            Some(segment) => self.flows.add(&segment, time, receiver),
+            None => Ok(()),
         }
-        self.seen.wanted += 1;
-        self.flows.add(&segment, time, receiver)
     }
 }
 

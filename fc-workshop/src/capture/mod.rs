@@ -14,8 +14,9 @@ mod packet;
 mod tcp;
 mod text;
 
-pub use file::{Seen, read as read_file};
+pub use file::read as read_file;
 pub use packet::Ports;
+pub use tcp::Seen;
 pub use text::read as read_text;
 
 use std::fmt;

@@ -1,6 +1,6 @@
 //! Puts the segments of each flow in order.
 
-use super::packet::Segment;
+use super::packet::{Ports, Segment};
 use super::{Event, Flow, Receiver};
 use std::collections::{HashMap, VecDeque};
 use std::io;
@@ -18,14 +18,24 @@ const SEGMENTS: usize = 1024;
 /// Waiting bytes of all flows.
 const ALL_WAITING: usize = 32 << 20;
 
-/// The flows of a capture.
-#[derive(Debug, Default)]
-pub(super) struct Flows {
+/// The TCP segments of a capture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// Segments of connections with a wanted port.
+    pub wanted: u64,
+    /// Segments of other connections.
+    pub others: u64,
+}
+
+/// The flows of a capture that have one of the wanted ports.
+#[derive(Debug)]
+pub(super) struct Flows<'p> {
+    ports: &'p Ports,
+    /// The numbers of segments so far. The wanted ones are the clock.
+    seen: Seen,
     states: HashMap<Flow, State>,
     /// The number of waiting bytes of all flows.
     waiting: usize,
-    /// The number of segments so far, as a clock.
-    now: u64,
 }
 
 #[derive(Debug)]
@@ -38,6 +48,7 @@ struct State {
     /// The sequence number of the end of the flow.
     end: Option<u32>,
     is_closed: bool,
+    /// The time of the last segment.
     used: u64,
 }
 
@@ -85,15 +96,28 @@ fn distance(from: u32, to: u32) -> i32 {
     to.wrapping_sub(from).cast_signed()
 }
 
-impl Flows {
-    /// Adds a segment, and passes on the bytes that are in order.
+impl<'p> Flows<'p> {
+    pub(super) fn new(ports: &'p Ports) -> Self {
+        Self {
+            ports,
+            seen: Seen::default(),
+            states: HashMap::new(),
+            waiting: 0,
+        }
+    }
+
+    /// Counts a segment. With a wanted port, adds it and passes on the bytes that are in order.
     pub(super) fn add(
         &mut self,
         segment: &Segment<'_>,
         time: Duration,
         receiver: &mut Receiver<'_>,
     ) -> io::Result<()> {
-        self.now += 1;
+        if !self.ports.include(segment.flow) {
+            self.seen.others += 1;
+            return Ok(());
+        }
+        self.seen.wanted += 1;
         if let Some(acknowledged) = segment.acknowledged {
             self.acknowledge(segment.flow.reversed(), acknowledged, receiver)?;
         }
@@ -112,10 +136,9 @@ impl Flows {
         if !is_known {
             self.make_room(receiver)?;
         }
-        let now = self.now;
         let state = self.states.entry(segment.flow);
         let state = state.or_insert_with(|| State::new(first));
-        state.used = now;
+        state.used = self.seen.wanted;
         if segment.fin {
             state.end = Some(first.wrapping_add(count(segment.payload)));
         }
@@ -132,14 +155,14 @@ impl Flows {
         Ok(())
     }
 
-    /// Passes on all waiting bytes and ends all flows.
-    pub(super) fn finish(&mut self, receiver: &mut Receiver<'_>) -> io::Result<()> {
+    /// Passes on all waiting bytes and ends all flows. Returns the numbers of segments.
+    pub(super) fn finish(&mut self, receiver: &mut Receiver<'_>) -> io::Result<Seen> {
         let mut flows: Vec<_> = self.states.keys().copied().collect();
         flows.sort_unstable();
         for flow in flows {
             self.close(flow, receiver)?;
         }
-        Ok(())
+        Ok(self.seen)
     }
 
     /// Keeps the bytes of a later segment.

@@ -1,8 +1,7 @@
 //! Reads the text of `tcpdump -x` and `tcpdump -X`.
 
-use super::file::Seen;
 use super::packet::{Link, Ports, segment};
-use super::tcp::Flows;
+use super::tcp::{Flows, Seen};
 use super::{CaptureError, Receiver};
 use crate::dump::{columns, positioned};
 use std::io::{BufRead, BufReader, Read};
@@ -25,9 +24,7 @@ pub fn read(
 ) -> Result<Seen, CaptureError> {
     let mut input = BufReader::new(input);
     let mut packets = Packets {
-        ports,
-        flows: Flows::default(),
-        seen: Seen::default(),
+        flows: Flows::new(ports),
         time: Duration::ZERO,
         packet: Vec::new(),
     };
@@ -46,14 +43,11 @@ pub fn read(
     let ended = packets.end(receiver);
     ended
         .and_then(|()| packets.flows.finish(receiver))
-        .map_err(CaptureError::Receiver)?;
-    Ok(packets.seen)
+        .map_err(CaptureError::Receiver)
 }
 
 struct Packets<'p> {
-    ports: &'p Ports,
-    flows: Flows,
-    seen: Seen,
+    flows: Flows<'p>,
     time: Duration,
     packet: Vec<u8>,
 }
@@ -65,7 +59,7 @@ impl Packets<'_> {
         match positioned(line) {
             Some(rest) if is_indented => {
                 if self.packet.len() < LARGEST {
-                    let digits = columns(rest).iter().filter(|byte| byte.is_ascii_hexdigit());
+                    let digits = columns(rest).iter();
                     let digits: Vec<_> = digits
                         .filter_map(|digit| char::from(*digit).to_digit(16))
                         .collect();
@@ -92,15 +86,10 @@ impl Packets<'_> {
         // `-x` leaves out the link, `-xx` does not.
         let links = [Link::Ip, Link::Ethernet];
         let mut segments = links.into_iter().filter_map(|link| segment(link, &packet));
-        let Some(segment) = segments.next() else {
-            return Ok(());
-        };
-        if !self.ports.include(segment.flow) {
-            self.seen.others += 1;
-            return Ok(());
+        match segments.next() {
+            Some(segment) => self.flows.add(&segment, self.time, receiver),
+            None => Ok(()),
         }
-        self.seen.wanted += 1;
-        self.flows.add(&segment, self.time, receiver)
     }
 }
 
