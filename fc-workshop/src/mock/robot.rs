@@ -10,8 +10,7 @@ use crate::scenario::{Action, Play, Verdict, merge, omit};
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Frame, FrameError, FrameId, Packing, Reflector};
 use fc_spec::model::{
-    Cadence, EnvelopeRole, Exchange, HeaderRole, Kind, Operation, ResultCode, ResultRole, Side,
-    Value,
+    Cadence, EnvelopeRole, Exchange, HeaderRole, Kind, Operation, ResultRole, Side, Value,
 };
 use std::time::{Duration, Instant};
 
@@ -50,17 +49,6 @@ pub(super) struct Answer<'m> {
     pub(super) delay: Duration,
     /// `true` if the connection ends after the response.
     pub(super) disconnect: bool,
-}
-
-impl<'m> Answer<'m> {
-    fn new(bytes: Vec<u8>, accepted: Option<&'m Operation>) -> Self {
-        Self {
-            bytes,
-            accepted,
-            delay: Duration::ZERO,
-            disconnect: false,
-        }
-    }
 }
 
 impl<'m> Robot<'m> {
@@ -145,7 +133,6 @@ impl<'m> Robot<'m> {
 
     /// Returns the answer to a request.
     pub(super) fn answer(&mut self, frame: &Frame<'m>) -> Option<Answer<'m>> {
-        let model = self.reflector.model();
         let is_mine = |operation: &&Operation| {
             operation.kind() == Kind::Command && operation.sender == Side::App
         };
@@ -162,23 +149,18 @@ impl<'m> Robot<'m> {
         };
         let request = json(&text).unwrap_or(Value::Null);
         let scenario = self.scenario.as_mut();
-        if let Some(action) = scenario.and_then(|play| play.request(&operation.name, &request)) {
-            return self.act(frame.id, operation, &request, &action);
+        let scripted = scenario.and_then(|play| play.request(&operation.name, &request));
+        // In a scenario, preconditions do not count.
+        if scripted.is_none() && !self.ignores_preconditions {
+            let objection = self.memory.objection(self.reflector.model(), operation);
+            if let Some(objection) = objection {
+                return self.refuse(frame.id, ResultRole::Protocol, &objection);
+            }
         }
-        let objection = self.memory.objection(model, operation);
-        if let Some(objection) = objection.filter(|_| !self.ignores_preconditions) {
-            return self.refuse(frame.id, ResultRole::Protocol, &objection);
-        }
-        self.memory.accept(model, operation, &request);
-        let success = facts::result(model, ResultRole::Success)?;
-        let mut message = (self.reflector.samples()).response(Some(operation), success);
-        (self.memory).fill(model, operation, Direction::Response, &mut message);
-        self.begin(operation, &request, &message);
-        let bytes = self.seal(frame.id.answer(), message)?;
-        Some(Answer::new(bytes, Some(operation)))
+        self.act(frame.id, operation, &request, &scripted.unwrap_or_default())
     }
 
-    /// Answers as a scenario demands. Preconditions do not count.
+    /// Answers as an action demands. The default one accepts the request.
     fn act(
         &mut self,
         id: FrameId,
@@ -187,10 +169,9 @@ impl<'m> Robot<'m> {
         action: &Action,
     ) -> Option<Answer<'m>> {
         let model = self.reflector.model();
-        let mut answer = if let Some(code) = action.refuse {
+        let (message, accepted) = if let Some(code) = action.refuse {
             let result = model.results.iter().find(|result| result.code == code)?;
-            let message = self.reflector.samples().response(None, result);
-            Answer::new(self.seal(id.answer(), message)?, None)
+            (self.reflector.samples().response(None, result), None)
         } else {
             self.memory.accept(model, command, request);
             let success = facts::result(model, ResultRole::Success)?;
@@ -205,19 +186,23 @@ impl<'m> Robot<'m> {
             if action.reports.is_none() {
                 self.begin(command, request, &message);
             }
-            Answer::new(self.seal(id.answer(), message)?, Some(command))
+            (message, Some(command))
         };
+        let mut bytes = self.seal(id.answer(), message)?;
         self.plan_scripted(action);
         if action.bad_digest {
             let digest = HeaderRole::Digest;
-            self.reflector.overwrite(&mut answer.bytes, digest, 0xBAD);
+            self.reflector.overwrite(&mut bytes, digest, 0xBAD);
         }
         if action.silent {
-            answer.bytes.clear();
+            bytes.clear();
         }
-        answer.delay = action.delay;
-        answer.disconnect = action.disconnect;
-        Some(answer)
+        Some(Answer {
+            bytes,
+            accepted,
+            delay: action.delay,
+            disconnect: action.disconnect,
+        })
     }
 
     fn plan_scripted(&mut self, action: &Action) {
@@ -291,20 +276,19 @@ impl<'m> Robot<'m> {
         model.envelope.result_code()?;
         let result = facts::result(model, role)?;
         let mut message = (self.reflector.samples()).response(None, result);
-        if !reason.is_empty() {
-            self.set_text(&mut message, result, reason);
-        }
-        Some(Answer::new(self.seal(id.answer(), message)?, None))
-    }
-
-    /// Adds the reason of a refusal to its text.
-    fn set_text(&self, message: &mut Value, result: &ResultCode, reason: &str) {
-        let fields = &self.reflector.model().envelope.response;
-        let texts = fields.iter();
-        for field in texts.filter(|field| field.role == EnvelopeRole::ResultText) {
+        let fields = model.envelope.response.iter();
+        let texts = fields.filter(|field| field.role == EnvelopeRole::ResultText);
+        // The reason follows the text of the result.
+        for field in texts.filter(|_| !reason.is_empty()) {
             let text = format!("{}: {reason}", result.text.zh);
             message.set(&field.wire, Value::String(text));
         }
+        Some(Answer {
+            bytes: self.seal(id.answer(), message)?,
+            accepted: None,
+            delay: Duration::ZERO,
+            disconnect: false,
+        })
     }
 
     fn seal(&self, id: FrameId, mut message: Value) -> Option<Vec<u8>> {
