@@ -1,6 +1,6 @@
 //! The trials of a robot.
 
-use super::checks::{About, CHECKS};
+use super::checks::CHECKS;
 use super::line::{Evidence, Line, Response, Step, Stop, example};
 use super::{Outcome, Settings, Trial, requests};
 use fc_reflect::{FrameId, Packing, Reflector};
@@ -137,20 +137,15 @@ async fn all(reflector: &Reflector<'_>, settings: &Settings, run: &mut Run<'_>) 
         let outcome = evidence.outcome(called.map(|_| ()));
         run.end(name, demand, outcome);
     }
-    for About {
-        check,
-        name,
-        zh,
-        en,
-    } in CHECKS
-    {
-        if run.wants(name) {
-            let mut evidence = Evidence::default();
-            let result = check.run(&stage, &mut evidence).await;
-            let demand = text!("{zh}", "{en}");
-            let outcome = evidence.outcome(result);
-            run.end(name.to_owned(), demand, outcome);
+    for check in CHECKS {
+        if !run.wants(check.name) {
+            continue;
         }
+        let mut evidence = Evidence::default();
+        let result = (check.run)(&stage, &mut evidence).await;
+        let demand = text!("{zh}", "{en}", zh = check.zh, en = check.en);
+        let outcome = evidence.outcome(result);
+        run.end(check.name.to_owned(), demand, outcome);
     }
 }
 
