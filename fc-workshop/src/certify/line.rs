@@ -4,7 +4,7 @@ use super::{Failure, Outcome};
 use crate::answer;
 use crate::facts;
 use crate::stream::FrameStream;
-use fc_reflect::{Direction, Frame, FrameId, Message, Packing, Reflector};
+use fc_reflect::{Direction, Frame, FrameId, Packing, Reflector};
 use fc_spec::model::{KindRole, Operation, ResultRole, Text};
 use fc_spec::text;
 use std::time::Duration;
@@ -197,8 +197,8 @@ impl<'r, 'm> Line<'r, 'm> {
         }
     }
 
-    /// Returns the response to a request within the timeout of a call.
-    pub(super) async fn response(&mut self, id: FrameId) -> Step<Response<'m>> {
+    /// Returns the result of the response to a request within the timeout of a call.
+    pub(super) async fn response(&mut self, id: FrameId) -> Step<answer::Outcome<'m>> {
         let wait = facts::call_timeout(self.reflector.model());
         match self.next(wait).await? {
             Next::Frame(frame) if frame.id == id.answer() => self.read(&frame),
@@ -222,8 +222,8 @@ impl<'r, 'm> Line<'r, 'm> {
         }
     }
 
-    /// Checks the body of a response.
-    fn read(&self, frame: &Frame<'m>) -> Step<Response<'m>> {
+    /// Checks the body of a response, and returns its result.
+    fn read(&self, frame: &Frame<'m>) -> Step<answer::Outcome<'m>> {
         let model = self.reflector.model();
         let operation = frame.operation;
         let message = self
@@ -248,40 +248,8 @@ impl<'r, 'm> Line<'r, 'm> {
         }
         match &message.body {
             Err(error) if outcome.is_success() => deviates(breaks(error)),
-            _ => Ok(Response {
-                role: outcome.known.and_then(|known| known.role),
-                is_success: outcome.is_success(),
-                message,
-            }),
+            _ => Ok(outcome),
         }
-    }
-}
-
-/// A valid response.
-pub(super) struct Response<'m> {
-    /// The role of its result.
-    pub(super) role: Option<ResultRole>,
-    /// `true` for a success.
-    pub(super) is_success: bool,
-    /// The message.
-    pub(super) message: Message<'m>,
-}
-
-impl Response<'_> {
-    /// Checks that the response is a refusal with this role.
-    pub(super) fn is_refusal(&self, model: &fc_spec::model::Model, role: ResultRole) -> Step {
-        let Some(expected) = facts::result(model, role) else {
-            return Ok(());
-        };
-        if self.role == Some(role) {
-            return Ok(());
-        }
-        let code = expected.code;
-        let found = answer::Outcome::of(model, &self.message).code.unwrap_or(0);
-        deviates(text!(
-            "应为结果码 {code}，实际为 {found}",
-            "expected the result {code}, found {found}"
-        ))
     }
 }
 

@@ -75,7 +75,7 @@ pub(super) async fn unknown_kind(stage: &Stage<'_, '_>, evidence: &mut Evidence)
     line.send(&bytes).await;
     // The refusal has the unknown kind, too, so only the connection is checked.
     line.tolerate_errors();
-    stage.ask(&mut line, 2).await.map(|_| ())
+    stage.ask(&mut line, 2).await
 }
 
 pub(super) async fn bad_digest(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
@@ -97,7 +97,7 @@ async fn protocol_error(
 ) -> Step {
     let mut line = stage.connect(evidence).await?;
     refusal(stage, &mut line, id, bytes, ResultRole::Protocol).await?;
-    stage.ask(&mut line, 2).await.map(|_| ())
+    stage.ask(&mut line, 2).await
 }
 
 /// Returns the frame of data that claims to be compressed, with this length after decompression.

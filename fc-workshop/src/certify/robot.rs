@@ -1,7 +1,7 @@
 //! The trials of a robot.
 
 use super::checks::CHECKS;
-use super::line::{Evidence, Line, Response, Step, Stop, example};
+use super::line::{Evidence, Line, Step, Stop, deviates, example};
 use super::{Outcome, Settings, Trial, requests};
 use fc_reflect::{FrameId, Packing, Reflector};
 use fc_spec::model::{Effect, Kind, Model, Operation, Side, Text};
@@ -51,11 +51,11 @@ impl<'m> Stage<'_, 'm> {
         })
     }
 
-    /// Sends the probe and returns its response.
-    pub(super) async fn ask(&self, line: &mut Line<'_, 'm>, id: u32) -> Step<Response<'m>> {
+    /// Sends the probe and waits for its response.
+    pub(super) async fn ask(&self, line: &mut Line<'_, 'm>, id: u32) -> Step {
         let (_, id, data) = self.probe(id)?;
         line.send(&self.seal(id, &data, Packing::Plain)?).await;
-        line.response(id).await
+        line.response(id).await.map(|_| ())
     }
 
     /// Checks that a new app is served.
@@ -66,13 +66,12 @@ impl<'m> Stage<'_, 'm> {
             self.ask(&mut line, 1).await
         };
         match served.await {
-            Ok(_) => Ok(()),
-            Err(Stop::Skip(reason)) => Err(Stop::Skip(reason)),
-            Err(Stop::Deviation(reason)) => Err(Stop::Deviation(text!(
+            Err(Stop::Deviation(reason)) => deviates(text!(
                 "之后新的 app 得不到服务：{reason}",
                 "after it, a new app is not served: {reason}",
                 reason = reason
-            ))),
+            )),
+            other => other,
         }
     }
 }
