@@ -5,7 +5,6 @@ use crate::stream::FrameStream;
 use fc_reflect::{Direction, Frame, FrameError, FrameId, Packing, Reflector};
 use fc_runtime::digest::{DigestAlgorithm as _, Md5};
 use fc_runtime::{AckPolicy, Busy, Due, Incoming, Session};
-use fc_spec::model::ResultRole;
 use std::future::pending;
 use std::io;
 use std::sync::Arc;
@@ -135,18 +134,7 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
     }
 
     fn send_ack(&mut self, report: &Frame<'m>) {
-        let model = self.reflector.model();
-        let Some(success) = facts::result(model, ResultRole::Success) else {
-            return;
-        };
-        let samples = self.reflector.samples();
-        let mut message = samples.response(report.operation, success);
-        facts::stamp(model, Direction::Response, &mut message);
-        let data = message.to_string();
-        let sealed = self
-            .reflector
-            .seal(report.id.answer(), data.as_bytes(), Packing::Plain);
-        if let Ok(bytes) = sealed {
+        if let Some(bytes) = facts::success(self.reflector, report) {
             self.send(&bytes);
         }
     }

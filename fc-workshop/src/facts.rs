@@ -1,6 +1,7 @@
 //! The facts of a model in the form that a session takes.
 
-use fc_reflect::Direction;
+use fc_reflect::sample::Samples;
+use fc_reflect::{Direction, Frame, Packing, Reflector};
 use fc_runtime::{AckPolicy, Allowance, Limits, SessionRules};
 use fc_spec::model::{
     self, EnvelopeRole, HeaderRole, Model, Number, ResultCode, ResultRole, Value,
@@ -79,16 +80,21 @@ pub fn first_id() -> u32 {
 
 /// Sets the time keys of the envelope to the current time.
 pub fn stamp(model: &Model, direction: Direction, message: &mut Value) {
-    let fields = match direction {
-        Direction::Request => &model.envelope.request,
-        Direction::Response => &model.envelope.response,
-    };
-    for field in fields
-        .iter()
-        .filter(|field| field.role == EnvelopeRole::Time)
-    {
+    let fields = Samples::new(model).envelope(direction).iter();
+    for field in fields.filter(|field| field.role == EnvelopeRole::Time) {
         if let Some(time) = message.get_mut(&field.wire) {
             *time = Value::Number(Number::Int(now_ms()));
         }
     }
+}
+
+/// Returns the frame that answers a command, or acknowledges a report, with success and the current time.
+pub(crate) fn success(reflector: &Reflector<'_>, request: &Frame<'_>) -> Option<Vec<u8>> {
+    let model = reflector.model();
+    let success = result(model, ResultRole::Success)?;
+    let mut message = reflector.samples().response(request.operation, success);
+    stamp(model, Direction::Response, &mut message);
+    let data = message.to_string();
+    let sealed = reflector.seal(request.id.answer(), data.as_bytes(), Packing::Plain);
+    sealed.ok()
 }

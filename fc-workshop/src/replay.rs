@@ -5,6 +5,7 @@ use crate::decode::Record;
 use crate::facts;
 use crate::scenario::{Action, Expected, Rule, Scenario, ScriptedReport};
 use fc_reflect::FrameId;
+use fc_reflect::sample::Samples;
 use fc_spec::model::{Direction, KindRole, Model, ResultRole, Value};
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -144,10 +145,7 @@ impl<'m> Recorded<'m> {
 
     /// Returns a message without its envelope, such as the time and the result.
     fn body(&self, message: &Value, direction: Direction) -> Value {
-        let envelope = match direction {
-            Direction::Request => &self.model.envelope.request,
-            Direction::Response => &self.model.envelope.response,
-        };
+        let envelope = Samples::new(self.model).envelope(direction);
         let mut body = message.clone();
         if let Value::Object(entries) = &mut body {
             entries.retain(|(key, _)| envelope.iter().all(|field| field.wire != *key));

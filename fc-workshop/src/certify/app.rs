@@ -360,16 +360,8 @@ impl<'r, 'm> App<'r, 'm> {
                 error = error.to_string()
             ));
         }
-        let model = self.model();
-        if let Some(success) = facts::result(model, ResultRole::Success) {
-            let samples = self.reflector.samples();
-            let mut message = samples.response(frame.operation, success);
-            facts::stamp(model, Direction::Response, &mut message);
-            let data = message.to_string();
-            let id = frame.id.answer();
-            if let Ok(bytes) = self.reflector.seal(id, data.as_bytes(), Packing::Plain) {
-                self.send(&bytes).await;
-            }
+        if let Some(bytes) = facts::success(self.reflector, frame) {
+            self.send(&bytes).await;
         }
     }
 }

@@ -4,8 +4,8 @@ use super::{Failure, Outcome};
 use crate::answer;
 use crate::facts;
 use crate::stream::FrameStream;
-use fc_reflect::{Direction, Frame, FrameId, Packing, Reflector};
-use fc_spec::model::{KindRole, Operation, ResultRole, Text};
+use fc_reflect::{Direction, Frame, FrameId, Reflector};
+use fc_spec::model::{KindRole, Operation, Text};
 use fc_spec::text;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -183,16 +183,7 @@ impl<'r, 'm> Line<'r, 'm> {
 
     /// Acknowledges a report with success.
     pub(super) async fn acknowledge(&mut self, report: &Frame<'m>) {
-        let model = self.reflector.model();
-        let Some(success) = facts::result(model, ResultRole::Success) else {
-            return;
-        };
-        let samples = self.reflector.samples();
-        let mut message = samples.response(report.operation, success);
-        facts::stamp(model, Direction::Response, &mut message);
-        let data = message.to_string();
-        let id = report.id.answer();
-        if let Ok(bytes) = self.reflector.seal(id, data.as_bytes(), Packing::Plain) {
+        if let Some(bytes) = facts::success(self.reflector, report) {
             self.send(&bytes).await;
         }
     }

@@ -1,5 +1,6 @@
 //! JSON Schema of messages, as viewers of recordings read it: the root is an object, and references are internal.
 
+use fc_reflect::sample::Samples;
 use fc_spec::model::{
     Direction, EnumRepr, EnumType, Field, Model, OneOf, Operation, StructType, Type, TypeRef,
     TypeShape, WireForm,
@@ -13,12 +14,8 @@ pub(super) fn of(model: &Model, operation: &Operation, direction: Direction) -> 
         model,
         wanted: BTreeSet::new(),
     };
-    let envelope = match direction {
-        Direction::Request => &model.envelope.request,
-        Direction::Response => &model.envelope.response,
-    };
     let mut properties = Map::new();
-    for field in envelope {
+    for field in Samples::new(model).envelope(direction) {
         let mut property = schema.ty(&field.ty);
         describe(&mut property, &field.text.en);
         properties.insert(field.wire.clone(), property);
