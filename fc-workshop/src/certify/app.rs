@@ -1,15 +1,14 @@
 //! The trials of an app: a robot that answers its commands, and sends reports and faults.
 
 use super::Trial;
-use super::line::{Evidence, Next, Step, Stop, deviates, shown};
+use super::line::{Evidence, Next, Step, Stop, deviates, example, gzip, shown};
 use crate::answer;
 use crate::facts;
 use crate::listen::Listeners;
 use crate::stream::FrameStream;
-use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Frame, FrameId, Packing, Reflector};
 use fc_spec::model::{
-    EncodingRole, Exchange, HeaderRole, Kind, KindRole, Model, Operation, ResultRole, Text, Value,
+    Exchange, HeaderRole, Kind, KindRole, Model, Operation, ResultRole, Text, Value,
 };
 use fc_spec::text;
 use std::time::Duration;
@@ -96,9 +95,7 @@ impl<'r, 'm> App<'r, 'm> {
                 outcome: evidence.outcome(result),
             });
         };
-        let reports = self.model().operations.iter();
-        let is_report = |it: &&Operation| it.kind() == Kind::Report && it.code.value.is_some();
-        for report in reports.filter(is_report) {
+        for report in reports(self.model()) {
             let demand = text!(
                 "应答上报 `{name}`",
                 "the report `{name}` is acknowledged",
@@ -128,11 +125,9 @@ impl<'r, 'm> App<'r, 'm> {
         let report = self.any_report()?;
         match trial {
             Check::Repeated => {
-                let (id, bytes) = self.report(report, Packing::Plain, |_| {})?;
-                self.send(&bytes).await;
-                self.acknowledgement(id).await?;
-                self.send(&bytes).await;
-                self.acknowledgement(id).await
+                let sent = self.report(report, Packing::Plain, |_| {})?;
+                self.confirms(&sent).await?;
+                self.confirms(&sent).await
             }
             Check::Split => {
                 let (id, bytes) = self.report(report, Packing::Plain, |_| {})?;
@@ -143,23 +138,15 @@ impl<'r, 'm> App<'r, 'm> {
                 self.acknowledgement(id).await
             }
             Check::Compressed => {
-                let mut encodings = self.model().frame.encodings.iter();
-                if !encodings.any(|encoding| encoding.role == EncodingRole::Gzip) {
-                    return Err(Stop::Skip(text!(
-                        "协议没有压缩",
-                        "the protocol has no compression"
-                    )));
-                }
-                let (id, bytes) = self.report(report, Packing::Gzip { level: 6 }, |_| {})?;
-                self.send(&bytes).await;
-                self.acknowledgement(id).await
+                gzip(self.model())?;
+                let sent = self.report(report, Packing::Gzip { level: 6 }, |_| {})?;
+                self.confirms(&sent).await
             }
             Check::UnknownKey => {
-                let (id, bytes) = self.report(report, Packing::Plain, |message| {
+                let sent = self.report(report, Packing::Plain, |message| {
                     message.set("fcprotoUnknownKey", Value::Bool(true));
                 })?;
-                self.send(&bytes).await;
-                self.acknowledgement(id).await
+                self.confirms(&sent).await
             }
             Check::LateResponse => self.late_response(report).await,
             Check::BadDigest => self.bad_digest(report).await,
@@ -168,11 +155,8 @@ impl<'r, 'm> App<'r, 'm> {
     }
 
     fn any_report(&self) -> Step<&'m Operation> {
-        let mut reports = self.model().operations.iter();
-        let is_report = |it: &&Operation| it.kind() == Kind::Report && it.code.value.is_some();
-        reports
-            .find(is_report)
-            .ok_or_else(|| Stop::Skip(text!("规范没有上报", "the spec has no report")))
+        let report = reports(self.model()).next();
+        report.ok_or_else(|| Stop::Skip(text!("规范没有上报", "the spec has no report")))
     }
 
     /// Returns the frame of a report with the next message id.
@@ -183,15 +167,11 @@ impl<'r, 'm> App<'r, 'm> {
         change: impl FnOnce(&mut Value),
     ) -> Step<(FrameId, Vec<u8>)> {
         self.id = self.id.wrapping_add(1);
-        let id = self.reflector.id(report, Direction::Request, self.id);
-        let samples = self.reflector.samples();
-        let mut message = samples.message(report, Direction::Request, Profile::Example);
-        facts::stamp(self.model(), Direction::Request, &mut message);
-        change(&mut message);
-        let data = message.to_string();
-        let sealed = id.and_then(|id| {
+        let sealed = example(self.reflector, report, self.id).and_then(|(id, mut message)| {
+            change(&mut message);
+            let data = message.to_string();
             let bytes = self.reflector.seal(id, data.as_bytes(), packing);
-            bytes.ok().map(|bytes| (id, bytes))
+            Some((id, bytes.ok()?))
         });
         sealed.ok_or_else(|| {
             Stop::Skip(text!(
@@ -205,9 +185,14 @@ impl<'r, 'm> App<'r, 'm> {
         if matches!(&report.exchange, Exchange::Report { ack, .. } if ack.timeout_ms == 0) {
             return Err(Stop::Skip(text!("没有应答", "it has no acknowledgement")));
         }
-        let (id, bytes) = self.report(report, Packing::Plain, |_| {})?;
-        self.send(&bytes).await;
-        self.acknowledgement(id).await
+        let sent = self.report(report, Packing::Plain, |_| {})?;
+        self.confirms(&sent).await
+    }
+
+    /// Sends a report and waits for its acknowledgement.
+    async fn confirms(&mut self, (id, bytes): &(FrameId, Vec<u8>)) -> Step {
+        self.send(bytes).await;
+        self.acknowledgement(*id).await
     }
 
     async fn late_response(&mut self, report: &Operation) -> Step {
@@ -364,6 +349,12 @@ impl<'r, 'm> App<'r, 'm> {
             self.send(&bytes).await;
         }
     }
+}
+
+/// Returns the reports that can be sent.
+fn reports(model: &Model) -> impl Iterator<Item = &Operation> {
+    let operations = model.operations.iter();
+    operations.filter(|it| it.kind() == Kind::Report && it.code.value.is_some())
 }
 
 fn no_acknowledgement(id: FrameId) -> Text {

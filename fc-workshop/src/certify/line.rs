@@ -4,8 +4,9 @@ use super::{Failure, Outcome};
 use crate::answer;
 use crate::facts;
 use crate::stream::FrameStream;
+use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Frame, FrameId, Reflector};
-use fc_spec::model::{KindRole, Operation, Text};
+use fc_spec::model::{Encoding, EncodingRole, KindRole, Model, Operation, Text, Value};
 use fc_spec::text;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -249,16 +250,21 @@ pub(super) fn shown(id: FrameId) -> String {
     format!("0x{:04X} #{}", id.code, id.id)
 }
 
-/// Returns the request with the example of a command.
+/// Returns the request or report with the example of an operation.
 pub(super) fn example(
     reflector: &Reflector<'_>,
-    command: &Operation,
+    operation: &Operation,
     id: u32,
-) -> Option<(FrameId, Vec<u8>)> {
-    let id = reflector.id(command, Direction::Request, id)?;
+) -> Option<(FrameId, Value)> {
+    let id = reflector.id(operation, Direction::Request, id)?;
     let samples = reflector.samples();
-    let profile = fc_reflect::sample::Profile::Example;
-    let mut message = samples.message(command, Direction::Request, profile);
+    let mut message = samples.message(operation, Direction::Request, Profile::Example);
     facts::stamp(reflector.model(), Direction::Request, &mut message);
-    Some((id, message.to_string().into_bytes()))
+    Some((id, message))
+}
+
+/// Returns the encoding of compressed data.
+pub(super) fn gzip(model: &Model) -> Step<&Encoding> {
+    let gzip = model.frame.encoding(EncodingRole::Gzip);
+    gzip.ok_or_else(|| Stop::Skip(text!("协议没有压缩", "the protocol has no compression")))
 }

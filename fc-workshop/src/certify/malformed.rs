@@ -1,21 +1,15 @@
 //! Frames with errors.
 
-use super::line::{Evidence, Next, Step, Stop, deviates};
+use super::line::{Evidence, Next, Step, Stop, deviates, gzip};
 use super::requests::refusal;
 use super::robot::Stage;
 use crate::facts;
 use fc_reflect::{FrameId, Packing};
-use fc_spec::model::{EncodingRole, HeaderRole, ResultRole};
+use fc_spec::model::{HeaderRole, ResultRole};
 use fc_spec::text;
 
-/// Returns the frame of a probe.
-fn frame(stage: &Stage<'_, '_>) -> Step<(FrameId, Vec<u8>)> {
-    let (_, id, data) = stage.probe(1)?;
-    Ok((id, stage.seal(id, &data, Packing::Plain)?))
-}
-
 pub(super) async fn bad_head(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (_, mut bytes) = frame(stage)?;
+    let (_, mut bytes) = stage.frame(1)?;
     let head = stage.model().frame.field(HeaderRole::Head);
     let head = head.ok_or_else(|| lacks(HeaderRole::Head))?;
     if let Some(byte) = bytes.get_mut(head.offset) {
@@ -30,7 +24,7 @@ pub(super) async fn wrong_length(
     evidence: &mut Evidence,
     length: u64,
 ) -> Step {
-    let (_, mut bytes) = frame(stage)?;
+    let (_, mut bytes) = stage.frame(1)?;
     let overwritten = length.min(u64::from(u32::MAX));
     let role = HeaderRole::TotalLength;
     stage.reflector.overwrite(&mut bytes, role, overwritten);
@@ -67,10 +61,10 @@ pub(super) async fn unknown_kind(stage: &Stage<'_, '_>, evidence: &mut Evidence)
     if stage.model().frame.field(HeaderRole::Kind).is_none() {
         return Err(lacks(HeaderRole::Kind));
     }
-    let (_, id, data) = stage.probe(1)?;
+    let (id, message) = stage.probe(1)?;
     let unknown = (0..=u8::MAX).find(|kind| kinds.with_value(*kind).is_none());
     let kind = unknown.ok_or_else(|| lacks(HeaderRole::Kind))?;
-    let bytes = stage.seal(FrameId { kind, ..id }, &data, Packing::Plain)?;
+    let bytes = stage.plain(FrameId { kind, ..id }, &message)?;
     let mut line = stage.connect(evidence).await?;
     line.send(&bytes).await;
     // The refusal has the unknown kind, too, so only the connection is checked.
@@ -82,7 +76,7 @@ pub(super) async fn bad_digest(stage: &Stage<'_, '_>, evidence: &mut Evidence) -
     if stage.model().frame.field(HeaderRole::Digest).is_none() {
         return Err(lacks(HeaderRole::Digest));
     }
-    let (id, mut bytes) = frame(stage)?;
+    let (id, mut bytes) = stage.frame(1)?;
     let role = HeaderRole::Digest;
     stage.reflector.overwrite(&mut bytes, role, 0xBAD);
     protocol_error(stage, evidence, id, &bytes).await
@@ -102,11 +96,8 @@ async fn protocol_error(
 
 /// Returns the frame of data that claims to be compressed, with this length after decompression.
 fn packed(stage: &Stage<'_, '_>, data: &[u8], plain_length: u64) -> Step<(FrameId, Vec<u8>)> {
-    let mut encodings = stage.model().frame.encodings.iter();
-    let gzip = encodings.find(|encoding| encoding.role == EncodingRole::Gzip);
-    let gzip =
-        gzip.ok_or_else(|| Stop::Skip(text!("协议没有压缩", "the protocol has no compression")))?;
-    let (_, id, _) = stage.probe(1)?;
+    let gzip = gzip(stage.model())?;
+    let (id, _) = stage.probe(1)?;
     let mut bytes = stage.seal(id, data, Packing::Plain)?;
     let value = u64::from(gzip.value);
     stage
@@ -129,7 +120,7 @@ pub(super) async fn gzip_bomb(stage: &Stage<'_, '_>, evidence: &mut Evidence) ->
 }
 
 pub(super) async fn deep_nesting(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (_, id, _) = stage.probe(1)?;
+    let (id, _) = stage.probe(1)?;
     let most = usize::try_from(stage.model().limits.frame_bytes).unwrap_or(usize::MAX);
     let depth = 100_000.min(most / 16).max(1000);
     let data = ["{\"a\":", &"[".repeat(depth), &"]".repeat(depth), "}"].concat();
@@ -152,7 +143,7 @@ async fn endured(stage: &Stage<'_, '_>, evidence: &mut Evidence, bytes: &[u8]) -
 }
 
 pub(super) async fn unfinished(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (_, bytes) = frame(stage)?;
+    let (_, bytes) = stage.frame(1)?;
     let mut line = stage.connect(evidence).await?;
     let half = bytes.get(..bytes.len() / 2).unwrap_or(&bytes);
     line.send(half).await;

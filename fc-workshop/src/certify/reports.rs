@@ -3,7 +3,7 @@
 use super::line::{Evidence, Line, Next, Step, Stop, deviates, example, shown};
 use super::robot::Stage;
 use crate::facts;
-use fc_reflect::{Direction, Frame, Packing};
+use fc_reflect::{Direction, Frame};
 use fc_spec::model::{Ack, Exchange, KindRole, Operation};
 use fc_spec::text;
 use std::time::{Duration, Instant};
@@ -11,13 +11,13 @@ use std::time::{Duration, Instant};
 /// Returns the first report of a new connection, which is not acknowledged. A command that sets one off is sent, too.
 async fn first_report<'m>(stage: &Stage<'_, 'm>, line: &mut Line<'_, 'm>) -> Step<Box<Frame<'m>>> {
     line.stop_acknowledging();
-    let (_, id, data) = stage.probe(1)?;
-    line.send(&stage.seal(id, &data, Packing::Plain)?).await;
+    let (_, frame) = stage.frame(1)?;
+    line.send(&frame).await;
     let mut causes = stage.commands.iter().filter(|it| !it.sets_off().is_empty());
     if let Some(command) = causes.next()
-        && let Some((id, data)) = example(stage.reflector, command, 2)
+        && let Some((id, message)) = example(stage.reflector, command, 2)
     {
-        line.send(&stage.seal(id, &data, Packing::Plain)?).await;
+        line.send(&stage.plain(id, &message)?).await;
     }
     let wait = facts::call_timeout(stage.model());
     loop {

@@ -1,11 +1,10 @@
 //! Requests and their responses.
 
-use super::line::{Evidence, Line, Next, Step, Stop, deviates, example, shown};
+use super::line::{Evidence, Line, Next, Step, Stop, deviates, example, gzip, shown};
 use super::robot::Stage;
-use crate::arguments::json;
 use crate::facts;
 use fc_reflect::{FrameId, Packing};
-use fc_spec::model::{EncodingRole, Operation, ResultRole, Type, Value};
+use fc_spec::model::{Operation, ResultRole, Type, Value};
 use fc_spec::text;
 
 /// The number of requests that are sent together.
@@ -18,8 +17,8 @@ pub(super) async fn call(
     evidence: &mut Evidence,
 ) -> Step<bool> {
     let mut line = stage.connect(evidence).await?;
-    let (id, data) = example(stage.reflector, command, 1).ok_or_else(none)?;
-    line.send(&stage.seal(id, &data, Packing::Plain)?).await;
+    let (id, message) = example(stage.reflector, command, 1).ok_or_else(none)?;
+    line.send(&stage.plain(id, &message)?).await;
     Ok(line.response(id).await?.is_success())
 }
 
@@ -36,8 +35,7 @@ pub(super) async fn ids(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step 
 }
 
 pub(super) async fn split(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (_, id, data) = stage.probe(1)?;
-    let frame = stage.seal(id, &data, Packing::Plain)?;
+    let (id, frame) = stage.frame(1)?;
     let mut line = stage.connect(evidence).await?;
     for byte in &frame {
         line.send(&[*byte]).await;
@@ -50,8 +48,8 @@ pub(super) async fn pipelined(stage: &Stage<'_, '_>, evidence: &mut Evidence) ->
     let mut frames = Vec::new();
     let mut open = Vec::new();
     for number in 1..=TOGETHER {
-        let (_, id, data) = stage.probe(number)?;
-        frames.extend(stage.seal(id, &data, Packing::Plain)?);
+        let (id, frame) = stage.frame(number)?;
+        frames.extend(frame);
         open.push(id.answer());
     }
     let mut line = stage.connect(evidence).await?;
@@ -85,30 +83,21 @@ async fn answer(line: &mut Line<'_, '_>, stage: &Stage<'_, '_>) -> Step<FrameId>
 }
 
 pub(super) async fn compressed(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let mut encodings = stage.model().frame.encodings.iter();
-    if !encodings.any(|encoding| encoding.role == EncodingRole::Gzip) {
-        return Err(Stop::Skip(text!(
-            "协议没有压缩",
-            "the protocol has no compression"
-        )));
-    }
-    let (_, id, mut data) = stage.probe(1)?;
+    gzip(stage.model())?;
+    let (id, message) = stage.probe(1)?;
     // Spaces make the data worth compressing.
-    data.extend([b' '; 200]);
-    let frame = stage.seal(id, &data, Packing::Gzip { level: 6 })?;
+    let data = message.to_string() + &" ".repeat(200);
+    let frame = stage.seal(id, data.as_bytes(), Packing::Gzip { level: 6 })?;
     let mut line = stage.connect(evidence).await?;
     line.send(&frame).await;
     line.response(id).await.map(|_| ())
 }
 
 pub(super) async fn unknown_key(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (_, id, data) = stage.probe(1)?;
-    let mut message = object(&data)?;
+    let (id, mut message) = stage.probe(1)?;
     message.set("fcprotoUnknownKey", Value::Bool(true));
-    let data = message.to_string();
     let mut line = stage.connect(evidence).await?;
-    line.send(&stage.seal(id, data.as_bytes(), Packing::Plain)?)
-        .await;
+    line.send(&stage.plain(id, &message)?).await;
     if line.response(id).await?.is_success() {
         return Ok(());
     }
@@ -116,11 +105,6 @@ pub(super) async fn unknown_key(stage: &Stage<'_, '_>, evidence: &mut Evidence) 
         "带未知的键的请求被拒绝",
         "the request with an unknown key was refused"
     ))
-}
-
-fn object(data: &[u8]) -> Step<Value> {
-    let text = std::str::from_utf8(data).ok();
-    text.and_then(json).ok_or_else(none)
 }
 
 /// Returns a command that may be sent, its example, and the wire key of a required field in its body.
@@ -135,8 +119,8 @@ fn with_required<'m>(stage: &Stage<'_, 'm>) -> Step<(FrameId, Value, &'m str)> {
         let Some(field) = required.find(|field| !matches!(field.ty, Type::Json)) else {
             continue;
         };
-        if let Some((id, data)) = example(stage.reflector, command, 1) {
-            return Ok((id, object(&data)?, &field.wire));
+        if let Some((id, message)) = example(stage.reflector, command, 1) {
+            return Ok((id, message, &field.wire));
         }
     }
     Err(Stop::Skip(text!(
@@ -162,7 +146,7 @@ pub(super) async fn wrong_type(stage: &Stage<'_, '_>, evidence: &mut Evidence) -
 }
 
 pub(super) async fn bad_json(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (_, id, _) = stage.probe(1)?;
+    let (id, _) = stage.probe(1)?;
     refused(stage, evidence, id, b"{\"no json").await
 }
 
@@ -223,9 +207,9 @@ pub(super) async fn unknown_code(stage: &Stage<'_, '_>, evidence: &mut Evidence)
 }
 
 pub(super) async fn half_closed(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
-    let (_, id, data) = stage.probe(1)?;
+    let (id, frame) = stage.frame(1)?;
     let mut line = stage.connect(evidence).await?;
-    line.send(&stage.seal(id, &data, Packing::Plain)?).await;
+    line.send(&frame).await;
     line.close_half().await;
     line.response(id).await.map(|_| ())
 }

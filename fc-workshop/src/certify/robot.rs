@@ -4,7 +4,7 @@ use super::checks::CHECKS;
 use super::line::{Evidence, Line, Step, Stop, deviates, example};
 use super::{Outcome, Settings, Trial, requests};
 use fc_reflect::{FrameId, Packing, Reflector};
-use fc_spec::model::{Effect, Kind, Model, Operation, Side, Text};
+use fc_spec::model::{Effect, Kind, Model, Operation, Side, Text, Value};
 use fc_spec::text;
 
 /// A device and the commands that may be sent to it.
@@ -27,17 +27,26 @@ impl<'m> Stage<'_, 'm> {
         Line::connect(self.reflector, self.address, evidence).await
     }
 
-    /// Returns the probe and its example.
-    pub(super) fn probe(&self, id: u32) -> Step<(&'m Operation, FrameId, Vec<u8>)> {
-        let skipped = || {
+    /// Returns the example of the probe.
+    pub(super) fn probe(&self, id: u32) -> Step<(FrameId, Value)> {
+        let example = self.probe.and_then(|it| example(self.reflector, it, id));
+        example.ok_or_else(|| {
             Stop::Skip(text!(
                 "没有可以发送的指令；用 --allow 允许更多",
                 "there is no command that may be sent; allow more with --allow"
             ))
-        };
-        let probe = self.probe.ok_or_else(skipped)?;
-        let (id, data) = example(self.reflector, probe, id).ok_or_else(skipped)?;
-        Ok((probe, id, data))
+        })
+    }
+
+    /// Returns the frame of the probe.
+    pub(super) fn frame(&self, id: u32) -> Step<(FrameId, Vec<u8>)> {
+        let (id, message) = self.probe(id)?;
+        Ok((id, self.plain(id, &message)?))
+    }
+
+    /// Returns the frame of a message.
+    pub(super) fn plain(&self, id: FrameId, message: &Value) -> Step<Vec<u8>> {
+        self.seal(id, message.to_string().as_bytes(), Packing::Plain)
     }
 
     /// Returns the frame of a request.
@@ -53,8 +62,8 @@ impl<'m> Stage<'_, 'm> {
 
     /// Sends the probe and waits for its response.
     pub(super) async fn ask(&self, line: &mut Line<'_, 'm>, id: u32) -> Step {
-        let (_, id, data) = self.probe(id)?;
-        line.send(&self.seal(id, &data, Packing::Plain)?).await;
+        let (id, frame) = self.frame(id)?;
+        line.send(&frame).await;
         line.response(id).await.map(|_| ())
     }
 
