@@ -104,9 +104,8 @@ impl<'r, 'm> App<'r, 'm> {
             let result = self.acknowledges(report).await;
             end(self, format!("report.{}", report.name), demand, result);
         }
-        for trial in TRIALS {
-            let (name, zh, en) = trial.about();
-            let result = self.run(trial).await;
+        for (check, name, zh, en) in CHECKS {
+            let result = self.run(check).await;
             end(self, name.to_owned(), text!("{zh}", "{en}"), result);
         }
         let demand = text!("请求合乎规范", "requests fit the spec");
@@ -121,9 +120,11 @@ impl<'r, 'm> App<'r, 'm> {
         end(self, "request.valid".to_owned(), demand, result);
     }
 
-    async fn run(&mut self, trial: Check) -> Step {
-        let report = self.any_report()?;
-        match trial {
+    async fn run(&mut self, check: Check) -> Step {
+        let report = reports(self.model()).next();
+        let report =
+            report.ok_or_else(|| Stop::Skip(text!("规范没有上报", "the spec has no report")))?;
+        match check {
             Check::Repeated => {
                 let sent = self.report(report, Packing::Plain, |_| {})?;
                 self.confirms(&sent).await?;
@@ -152,11 +153,6 @@ impl<'r, 'm> App<'r, 'm> {
             Check::BadDigest => self.bad_digest(report).await,
             Check::Reconnects => self.reconnects(report).await,
         }
-    }
-
-    fn any_report(&self) -> Step<&'m Operation> {
-        let report = reports(self.model()).next();
-        report.ok_or_else(|| Stop::Skip(text!("规范没有上报", "the spec has no report")))
     }
 
     /// Returns the frame of a report with the next message id.
@@ -366,7 +362,6 @@ fn no_acknowledgement(id: FrameId) -> Text {
 }
 
 /// A check that needs any report.
-#[derive(Clone, Copy)]
 enum Check {
     Repeated,
     Split,
@@ -377,55 +372,48 @@ enum Check {
     Reconnects,
 }
 
-const TRIALS: [Check; 7] = [
-    Check::Repeated,
-    Check::Split,
-    Check::Compressed,
-    Check::UnknownKey,
-    Check::LateResponse,
-    Check::BadDigest,
-    Check::Reconnects,
+/// The checks in their order, each with its name and its demand in Chinese and in English.
+const CHECKS: [(Check, &str, &str, &str); 7] = [
+    (
+        Check::Repeated,
+        "acknowledgement.repeated",
+        "重发的上报再次得到应答",
+        "a repeated report is acknowledged again",
+    ),
+    (
+        Check::Split,
+        "acknowledgement.split",
+        "逐字节到达的上报得到应答",
+        "a report that arrives byte by byte is acknowledged",
+    ),
+    (
+        Check::Compressed,
+        "acknowledgement.compressed",
+        "压缩的上报得到应答",
+        "a compressed report is acknowledged",
+    ),
+    (
+        Check::UnknownKey,
+        "acknowledgement.unknown_key",
+        "忽略上报中未知的键",
+        "an unknown key in a report is ignored",
+    ),
+    (
+        Check::LateResponse,
+        "connection.late_response",
+        "不属于任何请求的响应不影响连接",
+        "a response to no request does not disturb the connection",
+    ),
+    (
+        Check::BadDigest,
+        "connection.bad_digest",
+        "损坏的上报没有应答，之后的上报得到应答",
+        "a damaged report is not acknowledged, and the next one is",
+    ),
+    (
+        Check::Reconnects,
+        "connection.lost",
+        "连接断开后 app 重新连接",
+        "the app connects again after a lost connection",
+    ),
 ];
-
-impl Check {
-    /// Returns the name, and the demand in Chinese and in English.
-    fn about(self) -> (&'static str, &'static str, &'static str) {
-        match self {
-            Self::Repeated => (
-                "acknowledgement.repeated",
-                "重发的上报再次得到应答",
-                "a repeated report is acknowledged again",
-            ),
-            Self::Split => (
-                "acknowledgement.split",
-                "逐字节到达的上报得到应答",
-                "a report that arrives byte by byte is acknowledged",
-            ),
-            Self::Compressed => (
-                "acknowledgement.compressed",
-                "压缩的上报得到应答",
-                "a compressed report is acknowledged",
-            ),
-            Self::UnknownKey => (
-                "acknowledgement.unknown_key",
-                "忽略上报中未知的键",
-                "an unknown key in a report is ignored",
-            ),
-            Self::LateResponse => (
-                "connection.late_response",
-                "不属于任何请求的响应不影响连接",
-                "a response to no request does not disturb the connection",
-            ),
-            Self::BadDigest => (
-                "connection.bad_digest",
-                "损坏的上报没有应答，之后的上报得到应答",
-                "a damaged report is not acknowledged, and the next one is",
-            ),
-            Self::Reconnects => (
-                "connection.lost",
-                "连接断开后 app 重新连接",
-                "the app connects again after a lost connection",
-            ),
-        }
-    }
-}
