@@ -12,6 +12,7 @@ use crate::fault::{Delivery, Fault, FaultKind, Faults};
 use crate::listen::{self, Listeners};
 use crate::stream::FrameStream;
 use fc_reflect::{FrameId, Reflector};
+use futures_util::future::try_join;
 use futures_util::stream::{FuturesUnordered, StreamExt as _};
 use std::cell::RefCell;
 use std::io;
@@ -147,12 +148,12 @@ impl<'m> Watch<'_, 'm, '_, '_> {
     }
 }
 
-/// The end of a relay.
-enum End {
-    /// The sender has closed its side.
-    Closed,
+/// The reason why a relay ends before its sender has closed its side.
+enum Stop {
     /// The connection is broken, or a fault ends it.
     Broken,
+    /// The sink has failed.
+    Sink(io::Error),
 }
 
 impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
@@ -197,37 +198,24 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
     {
         let (app_reads, app_writes) = split(app);
         let (robot_reads, robot_writes) = split(robot);
-        let mut there = pin!(self.relay(flow, app_reads, robot_writes, 2 * number));
-        let mut back = pin!(self.relay(flow.reversed(), robot_reads, app_writes, 2 * number + 1));
-        let (mut there_ended, mut back_ended) = (false, false);
-        while !(there_ended && back_ended) {
-            let end = tokio::select! {
-                end = &mut there, if !there_ended => {
-                    there_ended = true;
-                    end?
-                }
-                end = &mut back, if !back_ended => {
-                    back_ended = true;
-                    end?
-                }
-            };
-            if matches!(end, End::Broken) {
-                break;
-            }
+        let there = self.relay(flow, app_reads, robot_writes, 2 * number);
+        let back = self.relay(flow.reversed(), robot_reads, app_writes, 2 * number + 1);
+        if let Err(Stop::Sink(error)) = try_join(there, back).await {
+            return Err(error);
         }
         let mut watch = self.watch.borrow_mut();
         watch.close(flow)?;
         watch.close(flow.reversed())
     }
 
-    /// Forwards one direction.
+    /// Forwards one direction until its sender closes its side.
     async fn relay(
         &self,
         flow: Flow,
         mut reader: impl AsyncRead + Unpin,
         mut writer: impl AsyncWrite + Unpin,
         stream: u64,
-    ) -> io::Result<End> {
+    ) -> Result<(), Stop> {
         let Settings { faults, seed, .. } = self.settings;
         let faults = Faults::new(self.reflector, faults, *seed, stream);
         let mut link = (!self.settings.faults.is_empty()).then(|| FaultyLink {
@@ -236,56 +224,51 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
         });
         let mut buffer = vec![0; READ];
         loop {
-            let Ok(count) = reader.read(&mut buffer).await else {
-                return Ok(End::Broken);
-            };
+            let read = reader.read(&mut buffer).await;
+            let count = read.map_err(|_| Stop::Broken)?;
             let bytes = buffer.get(..count).unwrap_or_default();
-            self.watch.borrow_mut().bytes(flow, bytes)?;
-            let written = match &mut link {
+            let seen = self.watch.borrow_mut().bytes(flow, bytes);
+            seen.map_err(Stop::Sink)?;
+            match &mut link {
                 Some(link) => self.deliver(link, flow, bytes, &mut writer).await?,
-                None => writer.write_all(bytes).await.is_ok(),
-            };
-            if !written {
-                return Ok(End::Broken);
+                None => (writer.write_all(bytes).await).map_err(|_| Stop::Broken)?,
             }
             if count == 0 {
                 // The receiver may have left already.
                 let _ = writer.shutdown().await;
-                return Ok(End::Closed);
+                return Ok(());
             }
         }
     }
 
-    /// Forwards the frames in received bytes, with their faults; no bytes are the end. Returns `false` if the connection
-    /// ends here.
+    /// Forwards the frames in received bytes, with their faults; no bytes are the end.
     async fn deliver(
         &self,
         link: &mut FaultyLink<'_, 'm>,
         flow: Flow,
         bytes: &[u8],
         writer: &mut (impl AsyncWrite + Unpin),
-    ) -> io::Result<bool> {
+    ) -> Result<(), Stop> {
         link.frames.room().extend_from_slice(bytes);
         loop {
             let piece = match link.frames.next(self.reflector) {
                 Ok(Some(piece)) => piece,
-                Ok(None) if !bytes.is_empty() => return Ok(true),
+                Ok(None) if !bytes.is_empty() => return Ok(()),
                 // The end of the bytes, or bytes that are no frame.
                 Ok(None) | Err(_) => {
                     let rest = std::mem::take(&mut link.frames);
-                    return Ok(writer.write_all(rest.rest()).await.is_ok());
+                    let written = writer.write_all(rest.rest()).await;
+                    return written.map_err(|_| Stop::Broken);
                 }
             };
             let delivery = link.faults.deliver(&piece);
             if let (Ok(frame), false) = (&piece.frame, delivery.faults.is_empty()) {
-                (self.watch.borrow_mut().sink)(Event::Faults {
-                    flow,
-                    id: frame.id,
-                    kinds: &delivery.faults,
-                })?;
+                let (id, kinds) = (frame.id, &delivery.faults);
+                let seen = (self.watch.borrow_mut().sink)(Event::Faults { flow, id, kinds });
+                seen.map_err(Stop::Sink)?;
             }
             if write(&delivery, writer).await.is_err() || delivery.ends {
-                return Ok(false);
+                return Err(Stop::Broken);
             }
         }
     }
