@@ -45,13 +45,7 @@ impl<'m> Reader<'_, 'm> {
         mut each: impl FnMut(&mut Self, &str, Node<'t>),
     ) {
         let Some(entries) = node.as_mapping() else {
-            let found = node.describe();
-            let message = text!(
-                "应为映射，实际为{found}",
-                "expected a mapping, found {found}",
-                found = found
-            );
-            return self.error(FaultCode::WrongKind, node, message);
+            return self.wrong_kind(node, &text!("映射", "a mapping"));
         };
         for entry in entries {
             let name = entry.name();
@@ -63,20 +57,30 @@ impl<'m> Reader<'_, 'm> {
         }
     }
 
+    fn wrong_kind(&mut self, node: Node<'_>, expected: &Text) {
+        let found = node.describe();
+        let message = text!(
+            "应为{expected}，实际为{found}",
+            "expected {expected}, found {found}",
+            expected = expected,
+            found = found
+        );
+        self.error(FaultCode::WrongKind, node, message);
+    }
+
     fn unknown_key(&mut self, entry: Entry<'_>, known: &[&'static str]) {
         let name = entry.name();
-        let listed = Text::listed(known);
-        let mut message = text!(
-            "没有键 `{name}`；可用的键：{listed}",
-            "there is no key `{name}`; the keys are {listed}",
-            listed = listed
-        );
-        if let Some(near) = nearest(name, known.iter().copied()) {
-            message = text!(
+        let message = match nearest(name, known.iter().copied()) {
+            Some(near) => text!(
                 "没有键 `{name}`，是否想写 `{near}`？",
                 "there is no key `{name}`; did you mean `{near}`?"
-            );
-        }
+            ),
+            None => text!(
+                "没有键 `{name}`；可用的键：{known}",
+                "there is no key `{name}`; the keys are {known}",
+                known = Text::listed(known)
+            ),
+        };
         self.error(FaultCode::UnknownKey, entry.key, message);
     }
 
@@ -104,13 +108,7 @@ impl<'m> Reader<'_, 'm> {
         mut item: impl FnMut(&mut Self, Node<'_>) -> Option<T>,
     ) -> Vec<T> {
         let Some(items) = node.as_sequence() else {
-            let found = node.describe();
-            let message = text!(
-                "应为列表，实际为{found}",
-                "expected a list, found {found}",
-                found = found
-            );
-            self.error(FaultCode::WrongKind, node, message);
+            self.wrong_kind(node, &text!("列表", "a list"));
             return Vec::new();
         };
         items.filter_map(|node| item(self, node)).collect()
@@ -166,37 +164,24 @@ impl<'m> Reader<'_, 'm> {
     }
 
     fn report(&mut self, node: Node<'_>) -> Option<ScriptedReport> {
-        if node.as_str().is_some() {
-            let report = self.operation(node, Kind::Report)?;
-            return Some(ScriptedReport {
-                report: report.name.clone(),
-                body: Value::Object(Vec::new()),
-                after: Duration::ZERO,
-            });
-        }
         let report = self.operation(node.get("report").unwrap_or(node), Kind::Report)?;
         let mut scripted = ScriptedReport {
             report: report.name.clone(),
             body: Value::Object(Vec::new()),
             after: Duration::ZERO,
         };
-        self.entries(
-            node,
-            &["report", "body", "after_ms"],
-            |reader, key, node| match key {
+        if node.as_str().is_none() {
+            let keys = ["report", "body", "after_ms"];
+            self.entries(node, &keys, |reader, key, node| match key {
                 "body" => scripted.body = reader.body(report, Direction::Request, node),
                 "after_ms" => scripted.after = reader.milliseconds(node),
                 _ => {}
-            },
-        );
+            });
+        }
         Some(scripted)
     }
 
     fn expected(&mut self, node: Node<'_>) -> Option<Expected> {
-        if node.as_str().is_some() {
-            let command = self.operation(node, Kind::Command)?;
-            return Some(Expected::Request(command.name.clone(), Value::Null));
-        }
         if let Some(report) = node.get("acknowledged") {
             let report = self.operation(report, Kind::Report)?;
             self.entries(node, &["acknowledged"], |_, _, _| {});
@@ -204,11 +189,13 @@ impl<'m> Reader<'_, 'm> {
         }
         let command = self.operation(node.get("request").unwrap_or(node), Kind::Command)?;
         let mut with = Value::Null;
-        self.entries(node, &["request", "with"], |_, key, node| {
-            if key == "with" {
-                with = value(node);
-            }
-        });
+        if node.as_str().is_none() {
+            self.entries(node, &["request", "with"], |_, key, node| {
+                if key == "with" {
+                    with = value(node);
+                }
+            });
+        }
         Some(Expected::Request(command.name.clone(), with))
     }
 
