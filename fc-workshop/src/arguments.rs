@@ -1,5 +1,6 @@
 //! Arguments of a call as text: `key=value` with the keys and names of the spec.
 
+use crate::paths;
 use fc_reflect::sample::constraint::on_the_wire;
 use fc_spec::model::{
     EnumType, Field, Model, Number, StructRef, StructType, Text, Type, TypeShape, Value, WireForm,
@@ -78,11 +79,7 @@ impl<'m> Arguments<'m> {
         let Some((step, rest)) = steps.split_first() else {
             return Ok(());
         };
-        let mut fields = shape.fields.iter();
-        let field = fields.find(|field| field.wire == **step || field.name == **step);
-        let Some(field) = field else {
-            return Err(unknown_key(shape, step, key));
-        };
+        let field = named(shape, step).ok_or_else(|| unknown_key(shape, step, key))?;
         if object.get(&field.wire).is_none() {
             object.set(&field.wire, Value::Null);
         }
@@ -107,57 +104,44 @@ impl<'m> Arguments<'m> {
             *value = on_the_wire(read, field.wire_form);
             return Ok(());
         };
-        match ty {
-            Type::Array(item) => {
-                let index: usize = step.parse().map_err(|_| {
-                    ArgumentError(text!(
-                        "`{key}`：`{step}` 应为列表中从 0 开始的序号",
-                        "`{key}`: expected an index from 0 instead of `{step}`"
-                    ))
-                })?;
-                if !matches!(value, Value::Array(_)) {
-                    *value = Value::Array(Vec::new());
-                }
-                let Value::Array(items) = value else {
-                    return Ok(());
-                };
-                if index >= MOST_ITEMS {
-                    return Err(ArgumentError(text!(
-                        "`{key}`：序号应小于 {MOST_ITEMS}",
-                        "`{key}`: expected an index below {MOST_ITEMS}"
-                    )));
-                }
-                if items.len() <= index {
-                    items.resize(index + 1, Value::Null);
-                }
-                match items.get_mut(index) {
-                    Some(value) => self.set(item, field, value, rest, key, text),
-                    None => Ok(()),
-                }
+        let Type::Array(item) = ty else {
+            let shapes = paths::shapes(self.model, ty);
+            let mut fitting = shapes.iter().filter(|shape| named(shape, step).is_some());
+            let Some(shape) = fitting.next().or(shapes.first()) else {
+                return Err(ArgumentError(text!(
+                    "`{key}`：`{step}` 之前的值不是对象",
+                    "`{key}`: the value before `{step}` is not an object"
+                )));
+            };
+            if !matches!(value, Value::Object(_)) {
+                *value = Value::Object(Vec::new());
             }
-            Type::Named(named) => {
-                if !matches!(value, Value::Object(_)) {
-                    *value = Value::Object(Vec::new());
-                }
-                match &self.model.types.get(named).shape {
-                    TypeShape::Struct(shape) => self.set_key(shape, value, steps, key, text),
-                    TypeShape::OneOf(choice) => {
-                        let shapes = choice.variants.iter();
-                        let mut shapes =
-                            shapes.map(|variant| self.model.types.structure(&variant.ty));
-                        let shape = shapes.clone().find(|shape| {
-                            let mut fields = shape.fields.iter();
-                            fields.any(|field| field.wire == **step || field.name == **step)
-                        });
-                        match shape.or_else(|| shapes.next()) {
-                            Some(shape) => self.set_key(shape, value, steps, key, text),
-                            None => Ok(()),
-                        }
-                    }
-                    TypeShape::Enum(_) => Err(no_keys(key, step)),
-                }
-            }
-            _ => Err(no_keys(key, step)),
+            return self.set_key(shape, value, steps, key, text);
+        };
+        let index: usize = step.parse().map_err(|_| {
+            ArgumentError(text!(
+                "`{key}`：`{step}` 应为列表中从 0 开始的序号",
+                "`{key}`: expected an index from 0 instead of `{step}`"
+            ))
+        })?;
+        if !matches!(value, Value::Array(_)) {
+            *value = Value::Array(Vec::new());
+        }
+        let Value::Array(items) = value else {
+            return Ok(());
+        };
+        if index >= MOST_ITEMS {
+            return Err(ArgumentError(text!(
+                "`{key}`：序号应小于 {MOST_ITEMS}",
+                "`{key}`: expected an index below {MOST_ITEMS}"
+            )));
+        }
+        if items.len() <= index {
+            items.resize(index + 1, Value::Null);
+        }
+        match items.get_mut(index) {
+            Some(value) => self.set(item, field, value, rest, key, text),
+            None => Ok(()),
         }
     }
 
@@ -242,6 +226,12 @@ impl<'m> Arguments<'m> {
     }
 }
 
+/// Returns the field with a wire key or a name.
+fn named<'s>(shape: &'s StructType, key: &str) -> Option<&'s Field> {
+    let mut fields = shape.fields.iter();
+    fields.find(|field| field.wire == key || field.name == key)
+}
+
 fn unknown_key(shape: &StructType, step: &str, key: &str) -> ArgumentError {
     let known = Text::listed(shape.fields.iter().map(|field| &field.wire));
     if shape.fields.is_empty() {
@@ -264,13 +254,6 @@ fn unknown_key(shape: &StructType, step: &str, key: &str) -> ArgumentError {
         "`{key}`: there is no key `{step}`; {similar}the keys are {known}",
         similar = similar,
         known = known
-    ))
-}
-
-fn no_keys(key: &str, step: &str) -> ArgumentError {
-    ArgumentError(text!(
-        "`{key}`：`{step}` 之前的值不是对象",
-        "`{key}`: the value before `{step}` is not an object"
     ))
 }
 

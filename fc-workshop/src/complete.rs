@@ -1,7 +1,8 @@
 //! Completes the words of a call: names of operations, keys and values.
 
-use crate::paths;
-use fc_spec::model::{Direction, Field, Kind, Model, StructRef, StructType, Type, TypeShape};
+use crate::paths::{self, shapes};
+use fc_spec::model::{Direction, Field, Kind, Model, StructRef, Type};
+use std::collections::HashSet;
 
 /// Returns the completions of a word, which comes after the words in `before`.
 #[must_use]
@@ -28,25 +29,23 @@ fn keys(model: &Model, body: &StructRef, word: &str) -> Vec<String> {
     let (parent, start) = word.split_at(word.rfind('.').map_or(0, |dot| dot + 1));
     let parents = match parent.strip_suffix('.') {
         None => vec![model.types.structure(body)],
-        Some(key) => field(model, body, key).map_or_else(Vec::new, |field| shapes(model, field)),
+        Some(key) => {
+            field(model, body, key).map_or_else(Vec::new, |field| shapes(model, &field.ty))
+        }
     };
     let fields = parents.into_iter().flat_map(|shape| &shape.fields);
     let fields = fields.filter(|field| field.wire.starts_with(start));
     let keys = fields.map(|field| {
-        let end = match (shapes(model, field).is_empty(), &field.ty) {
+        let end = match (shapes(model, &field.ty).is_empty(), &field.ty) {
             (true, _) => "=",
             (false, Type::Array(_)) => ".0.",
             (false, _) => ".",
         };
         format!("{parent}{}{end}", field.wire)
     });
-    let mut distinct = Vec::new();
-    for key in keys {
-        if !distinct.contains(&key) {
-            distinct.push(key);
-        }
-    }
-    distinct
+    // Variants may share a key.
+    let mut known = HashSet::new();
+    keys.filter(|key| known.insert(key.clone())).collect()
 }
 
 /// Returns the values of a key that begin with a text.
@@ -54,12 +53,13 @@ fn values(model: &Model, body: &StructRef, key: &str, start: &str) -> Vec<String
     let Some(field) = field(model, body, key) else {
         return Vec::new();
     };
-    let known: Vec<&str> = match &field.ty {
+    let known = match &field.ty {
         Type::Bool => vec!["true", "false"],
-        Type::Named(named) => match &model.types.get(named).shape {
-            TypeShape::Enum(shape) => shape.values.iter().map(|it| it.name.as_str()).collect(),
-            TypeShape::Struct(_) | TypeShape::OneOf(_) => Vec::new(),
-        },
+        Type::Named(named) => {
+            let shape = model.types.get(named).shape.enumeration();
+            let values = shape.into_iter().flat_map(|shape| &shape.values);
+            values.map(|value| value.name.as_str()).collect()
+        }
         _ => Vec::new(),
     };
     let known = known.into_iter().filter(|value| value.starts_with(start));
@@ -71,20 +71,4 @@ fn field<'m>(model: &'m Model, body: &StructRef, key: &str) -> Option<&'m Field>
     let steps = key.split('.').filter(|step| step.parse::<usize>().is_err());
     let path: Vec<&str> = steps.collect();
     paths::field(model, body, &path.join("."))
-}
-
-/// Returns the objects that a field, or an item of its list, may have.
-fn shapes<'m>(model: &'m Model, field: &Field) -> Vec<&'m StructType> {
-    let Type::Named(named) = field.ty.item() else {
-        return Vec::new();
-    };
-    match &model.types.get(named).shape {
-        TypeShape::Struct(shape) => vec![shape],
-        TypeShape::OneOf(choice) => {
-            let variants = choice.variants.iter();
-            let shapes = variants.map(|variant| model.types.structure(&variant.ty));
-            shapes.collect()
-        }
-        TypeShape::Enum(_) => Vec::new(),
-    }
 }

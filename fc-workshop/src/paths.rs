@@ -11,16 +11,25 @@ pub fn field<'m>(model: &'m Model, body: &StructRef, path: &str) -> Option<&'m F
     for step in path.split('.') {
         let key = step.split('[').next().unwrap_or_default();
         let field = shape?.field(key)?;
-        shape = match field.ty.item() {
-            Type::Named(named) => match &model.types.get(named).shape {
-                TypeShape::Struct(shape) => Some(shape),
-                TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-            },
-            _ => None,
-        };
+        let named = field.ty.innermost().map(|named| model.types.get(named));
+        shape = named.and_then(|ty| ty.shape.structure());
         found = Some(field);
     }
     found
+}
+
+/// Returns the objects that a value of a type, or an item of its list, may have.
+pub(crate) fn shapes<'m>(model: &'m Model, ty: &Type) -> Vec<&'m StructType> {
+    let shape = ty.innermost().map(|named| &model.types.get(named).shape);
+    match shape {
+        Some(TypeShape::Struct(shape)) => vec![shape],
+        Some(TypeShape::OneOf(choice)) => {
+            let variants = choice.variants.iter();
+            let shapes = variants.map(|variant| model.types.structure(&variant.ty));
+            shapes.collect()
+        }
+        Some(TypeShape::Enum(_)) | None => Vec::new(),
+    }
 }
 
 /// Returns the value at a path of wire keys.
