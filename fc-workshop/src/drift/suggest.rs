@@ -7,10 +7,7 @@ use fc_spec::amend::{Amendment, FieldKey, amend};
 use fc_spec::diagnostic::Faults;
 use fc_spec::format::Revised;
 use fc_spec::load::load;
-use fc_spec::model::{
-    EnumType, Field, IntKind, Model, Number, Quirk, Scalar, StructType, Type, TypeDef, TypeShape,
-    WireForm,
-};
+use fc_spec::model::{Field, IntKind, Model, Number, Quirk, Scalar, Type, TypeDef, WireForm};
 use fc_spec::source::Sources;
 use serde_json::Value;
 
@@ -48,7 +45,7 @@ fn amendment(model: &Model, deviation: &Deviation<'_>) -> Option<Amendment> {
         });
     }
     let key = key.trim_end_matches("[]");
-    let field = structure(owner)?.field(key)?;
+    let field = owner.shape.structure()?.field(key)?;
     let set = |key: FieldKey, value: Option<String>| Amendment::SetKey {
         owner: owner.name.clone(),
         field: field.wire.clone(),
@@ -57,7 +54,7 @@ fn amendment(model: &Model, deviation: &Deviation<'_>) -> Option<Amendment> {
     };
     Some(match place.kind {
         DeviationKind::UnknownEnumValue | DeviationKind::Body(BodyErrorKind::UnknownValue) => {
-            let (ty, _) = enum_of(model, field)?;
+            let ty = enum_of(model, field)?;
             let value = match found? {
                 Value::String(text) => Scalar::String(text),
                 Value::Number(number) => Scalar::Number(Number::Int(number.as_i64()?.into())),
@@ -69,7 +66,7 @@ fn amendment(model: &Model, deviation: &Deviation<'_>) -> Option<Amendment> {
             }
         }
         DeviationKind::StateOrder => {
-            let (ty, _) = enum_of(model, field)?;
+            let ty = enum_of(model, field)?;
             let (state, successor) = place.value.split_once(ARROW)?;
             Amendment::AddSuccessor {
                 owner: ty.name.clone(),
@@ -188,30 +185,24 @@ fn owner<'m>(
     let mut owner = body;
     let nexts = path.iter().skip(1).chain([&last]);
     for (key, next) in path.iter().zip(nexts) {
-        let field = structure(owner)?.field(key.trim_end_matches("[]"))?;
+        let field = owner.shape.structure()?.field(key.trim_end_matches("[]"))?;
         let named = field.ty.innermost()?;
         owner = model.types.get(named);
-        if let TypeShape::OneOf(choice) = &owner.shape {
+        if let Some(choice) = owner.shape.choice() {
             let variants = choice.variants.iter();
-            let mut structs = variants.filter_map(|it| model.types.named(it.ty.name()));
-            let has = |it: &&TypeDef| structure(it).is_some_and(|it| it.field(next).is_some());
+            let mut structs = variants.map(|it| model.types.get(&it.ty));
+            let has = |it: &&TypeDef| {
+                it.shape
+                    .structure()
+                    .is_some_and(|it| it.field(next).is_some())
+            };
             owner = structs.clone().find(has).or(structs.next())?;
         }
     }
     Some(owner)
 }
 
-fn structure(ty: &TypeDef) -> Option<&StructType> {
-    match &ty.shape {
-        TypeShape::Struct(shape) => Some(shape),
-        TypeShape::Enum(_) | TypeShape::OneOf(_) => None,
-    }
-}
-
-fn enum_of<'m>(model: &'m Model, field: &Field) -> Option<(&'m TypeDef, &'m EnumType)> {
+fn enum_of<'m>(model: &'m Model, field: &Field) -> Option<&'m TypeDef> {
     let ty = model.types.get(field.ty.innermost()?);
-    match &ty.shape {
-        TypeShape::Enum(shape) => Some((ty, shape)),
-        TypeShape::Struct(_) | TypeShape::OneOf(_) => None,
-    }
+    ty.shape.enumeration().map(|_| ty)
 }

@@ -2,7 +2,7 @@
 
 use crate::paths;
 use fc_spec::model::{
-    Accepted, Direction, Effect, Field, Model, Operation, Type, TypeShape, Value,
+    Accepted, Direction, Effect, EnumType, Field, Model, Operation, Type, TypeShape, Value,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -35,10 +35,8 @@ struct StoredKey {
 impl Memory {
     /// Returns the state of a robot that has just started.
     pub(super) fn new(model: &Model) -> Self {
-        let processes = model.types.iter().filter(|ty| match &ty.shape {
-            TypeShape::Enum(shape) => shape.is_process(),
-            TypeShape::Struct(_) | TypeShape::OneOf(_) => false,
-        });
+        let is_process = |shape: &TypeShape| shape.enumeration().is_some_and(EnumType::is_process);
+        let processes = model.types.iter().filter(|ty| is_process(&ty.shape));
         let accepted = model.operations.iter().filter_map(Operation::accepted);
         let accepted = accepted.flat_map(Accepted::state_sets);
         let accepted = accepted.map(|set| model.types.get(&set.ty));
