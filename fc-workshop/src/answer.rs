@@ -22,10 +22,7 @@ impl<'m> Outcome<'m> {
     /// Reads the result of a response.
     #[must_use]
     pub fn of(model: &'m Model, message: &Message<'_>) -> Self {
-        let code = match with_role(&message.envelope, EnvelopeRole::ResultCode) {
-            Some(Value::Int(code)) => i64::try_from(*code).ok(),
-            _ => None,
-        };
+        let code = result_code(message);
         let text = match with_role(&message.envelope, EnvelopeRole::ResultText) {
             Some(Value::Text(text)) => text.clone(),
             _ => String::new(),
@@ -41,6 +38,14 @@ impl<'m> Outcome<'m> {
             || self
                 .known
                 .is_some_and(|it| it.role == Some(ResultRole::Success))
+    }
+}
+
+/// Returns the result code of a response, if its envelope has one.
+pub(crate) fn result_code(message: &Message<'_>) -> Option<i64> {
+    match with_role(&message.envelope, EnvelopeRole::ResultCode)? {
+        Value::Int(code) => i64::try_from(*code).ok(),
+        _ => None,
     }
 }
 

@@ -19,15 +19,15 @@ pub use json::line as json;
 pub(crate) use json::milliseconds;
 pub use pair::Request;
 pub use source::{DecodeError, Source, read};
-pub(crate) use text::{clipped, clock, scalar};
+pub(crate) use text::{clipped, clock, scalar, side};
 pub use text::{hex, line, tree as text};
 
+use crate::answer::result_code;
 use crate::capture::Flow;
 use fc_reflect::{
-    About, BodyError, Frame, FrameError, FrameFault, FrameId, HeaderValue, Message, Reflector,
-    Value,
+    BodyError, Frame, FrameError, FrameFault, FrameId, HeaderValue, Message, Reflector,
 };
-use fc_spec::model::{EnvelopeRole, FrameKind, Operation};
+use fc_spec::model::{FrameKind, Operation};
 use scan::{Piece, Scanner};
 use std::collections::HashMap;
 use std::time::Duration;
@@ -111,14 +111,7 @@ impl Record<'_> {
     /// Returns the result of a response, if its envelope has one.
     #[must_use]
     pub fn result(&self) -> Option<i64> {
-        let envelope = &self.message.as_ref()?.envelope;
-        let result = envelope.iter().find(|node| {
-            matches!(node.about, About::Envelope(field) if field.role == EnvelopeRole::ResultCode)
-        })?;
-        match result.value {
-            Value::Int(code) => i64::try_from(code).ok(),
-            _ => None,
-        }
+        result_code(self.message.as_ref()?)
     }
 }
 

@@ -21,11 +21,10 @@ const NAME: usize = 24;
 #[must_use]
 pub fn tree(record: &Record<'_>, model: &Model, lang: Lang) -> String {
     let mut tree = Tree {
-        out: String::new(),
+        out: title(record, model, lang).join(" · ") + "\n",
         model,
         lang,
     };
-    tree.title(record);
     tree.header(record);
     if let Some(error @ RecordError::Frame(_)) = &record.error {
         tree.error(error);
@@ -38,17 +37,46 @@ pub fn tree(record: &Record<'_>, model: &Model, lang: Lang) -> String {
 /// Returns a record as one line: its title, and the name of its error.
 #[must_use]
 pub fn line(record: &Record<'_>, model: &Model, lang: Lang) -> String {
-    let mut tree = Tree {
-        out: String::new(),
-        model,
-        lang,
-    };
-    tree.title(record);
-    let mut line = tree.out.trim_end().to_owned();
-    if let Some(error) = &record.error {
-        let _ = write!(line, " · {}", error.name());
+    let mut parts = title(record, model, lang);
+    parts.extend(record.error.as_ref().map(|error| error.name().to_owned()));
+    parts.join(" · ")
+}
+
+/// Returns the parts of the first line.
+fn title(record: &Record<'_>, model: &Model, lang: Lang) -> Vec<String> {
+    let mut parts = Vec::new();
+    match record.id {
+        Some(id) => {
+            let name = record.operation.map_or_else(
+                || lang.pick("未知功能码", "unknown code"),
+                |it| it.name.as_str(),
+            );
+            let direction = side(id.direction, lang);
+            parts.push(format!("0x{:04X} {name} {direction}", id.code));
+            if let Some(operation) = record.operation {
+                parts.push(lang.text(&operation.title).to_owned());
+            }
+            if let Some(field) = model.frame.field(HeaderRole::Id) {
+                parts.push(format!("{} {}", field.wire, id.id));
+            }
+        }
+        None => parts.push(lang.pick("无法识别", "not a frame").to_owned()),
     }
-    line
+    let (length, offset) = (record.length, record.offset);
+    parts.push(lang.pick(
+        format!("{length} 字节，起始于 {offset}"),
+        format!("{length} bytes at {offset}"),
+    ));
+    parts.extend(record.time.map(clock));
+    parts.extend(record.flow.map(|flow| flow.to_string()));
+    if let Some(elapsed) = record.request.and_then(|request| request.elapsed) {
+        let elapsed = milliseconds(elapsed);
+        parts.push(match lang {
+            Lang::Zh => format!("请求后 {elapsed:.3} ms"),
+            Lang::En => format!("{elapsed:.3} ms after the request"),
+        });
+    }
+    parts
 }
 
 struct Tree<'m> {
@@ -58,50 +86,6 @@ struct Tree<'m> {
 }
 
 impl Tree<'_> {
-    fn title(&mut self, record: &Record<'_>) {
-        let lang = self.lang;
-        let mut parts = Vec::new();
-        match record.id {
-            Some(id) => {
-                let name = record.operation.map_or_else(
-                    || lang.pick("未知功能码", "unknown code"),
-                    |it| it.name.as_str(),
-                );
-                let direction = match id.direction {
-                    Direction::Request => lang.pick("请求", "request"),
-                    Direction::Response => lang.pick("响应", "response"),
-                };
-                parts.push(format!("0x{:04X} {name} {direction}", id.code));
-                if let Some(operation) = record.operation {
-                    parts.push(lang.text(&operation.title).to_owned());
-                }
-                if let Some(field) = self.model.frame.field(HeaderRole::Id) {
-                    parts.push(format!("{} {}", field.wire, id.id));
-                }
-            }
-            None => parts.push(lang.pick("无法识别", "not a frame").to_owned()),
-        }
-        let (length, offset) = (record.length, record.offset);
-        parts.push(match lang {
-            Lang::Zh => format!("{length} 字节，起始于 {offset}"),
-            Lang::En => format!("{length} bytes at {offset}"),
-        });
-        if let Some(time) = record.time {
-            parts.push(clock(time));
-        }
-        if let Some(flow) = record.flow {
-            parts.push(flow.to_string());
-        }
-        if let Some(elapsed) = record.request.and_then(|request| request.elapsed) {
-            let elapsed = milliseconds(elapsed);
-            parts.push(match lang {
-                Lang::Zh => format!("请求后 {elapsed:.3} ms"),
-                Lang::En => format!("{elapsed:.3} ms after the request"),
-            });
-        }
-        let _ = writeln!(self.out, "{}", parts.join(" · "));
-    }
-
     fn header(&mut self, record: &Record<'_>) {
         for value in &record.header {
             let meaning = self.meaning(value);
@@ -189,10 +173,7 @@ impl Tree<'_> {
         };
         let count = |zh: &str, en: &str| {
             let count = node.children().len();
-            match lang {
-                Lang::Zh => format!("{count} 个{zh}"),
-                Lang::En => format!("{count} {en}"),
-            }
+            lang.pick(format!("{count} 个{zh}"), format!("{count} {en}"))
         };
         let value = match &node.value {
             Value::Absent => lang
@@ -269,6 +250,14 @@ impl Tree<'_> {
             Lang::Zh => writeln!(self.out, "，{text}（{}）", error.detail()),
             Lang::En => writeln!(self.out, ": {}", error.detail()),
         };
+    }
+}
+
+/// Returns the name of a direction.
+pub(crate) fn side(direction: Direction, lang: Lang) -> &'static str {
+    match direction {
+        Direction::Request => lang.pick("请求", "request"),
+        Direction::Response => lang.pick("响应", "response"),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Deviations as text for people.
 
 use super::{Deviation, DeviationKind};
-use crate::decode::{clipped, clock, error_text};
-use fc_spec::model::{Direction, Lang};
+use crate::decode::{clipped, clock, error_text, side};
+use fc_spec::model::Lang;
 
 /// Returns a deviation in three lines: its place in the protocol, its kind and content, and its number and first frame.
 #[must_use]
@@ -15,13 +15,7 @@ pub fn deviation(deviation: &Deviation<'_>, lang: Lang) -> String {
     if let Some(operation) = deviation.operation {
         title.push(operation.name.clone());
     }
-    title.extend(place.direction.map(|direction| {
-        let name = match direction {
-            Direction::Request => lang.pick("请求", "request"),
-            Direction::Response => lang.pick("响应", "response"),
-        };
-        name.to_owned()
-    }));
+    title.extend(place.direction.map(|it| side(it, lang).to_owned()));
     if title.is_empty() {
         title.push(
             lang.pick("无法识别的字节", "bytes that are no frame")
@@ -34,22 +28,15 @@ pub fn deviation(deviation: &Deviation<'_>, lang: Lang) -> String {
         }
     }
     let name = place.kind.name();
-    let mut content = vec![match lang {
-        Lang::Zh => format!("{name}：{}", meaning(place.kind, lang)),
-        Lang::En => format!("{name}: {}", meaning(place.kind, lang)),
-    }];
+    let colon = lang.pick("：", ": ");
+    let mut content = vec![format!("{name}{colon}{}", meaning(place.kind, lang))];
     let example = clipped(&deviation.example);
     if !example.is_empty() && example != place.value {
-        content.push(match lang {
-            Lang::Zh => format!("收到 {example}"),
-            Lang::En => format!("found {example}"),
-        });
+        content.push(format!("{} {example}", lang.pick("收到", "found")));
     }
     if !deviation.expected.is_empty() {
-        content.push(match lang {
-            Lang::Zh => format!("规范：{}", deviation.expected),
-            Lang::En => format!("spec: {}", deviation.expected),
-        });
+        let spec = lang.pick("规范", "spec");
+        content.push(format!("{spec}{colon}{}", deviation.expected));
     }
     let first = match (lang, deviation.count) {
         (Lang::Zh, count) => format!("{count} 次，首次在位置 {}", deviation.offset),
