@@ -131,6 +131,15 @@ impl Error {
             Self::Body { error, .. } => error.path(),
         }
     }
+
+    /// Returns the actual and the expected content.
+    #[must_use]
+    pub fn detail(&self) -> &str {
+        match self {
+            Self::Frame(error) => &error.detail,
+            Self::Body { error, .. } => error.detail(),
+        }
+    }
 }
 
 impl fmt::Display for Error {

@@ -1,6 +1,6 @@
 //! Records as JSON, one line each.
 
-use super::{Record, RecordError};
+use super::Record;
 use serde::Serialize;
 use serde_json::value::RawValue;
 use std::time::Duration;
@@ -75,13 +75,13 @@ pub fn line(record: &Record<'_>) -> String {
     serde_json::to_string(&line).unwrap_or_default()
 }
 
-fn error<'r>(record: &Record<'_>, error: &'r RecordError) -> Error<'r> {
+fn error<'r>(record: &Record<'_>, error: &'r fc_reflect::Error) -> Error<'r> {
     Error {
         name: error.name(),
         path: error.path(),
         offset: match error {
-            RecordError::Frame(_) => record.offset,
-            RecordError::Body(error) => error.offset() as u64,
+            fc_reflect::Error::Frame(_) => record.offset,
+            fc_reflect::Error::Body { error, .. } => error.offset() as u64,
         },
         detail: error.detail(),
     }

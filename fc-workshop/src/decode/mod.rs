@@ -24,9 +24,7 @@ pub use text::{hex, line, tree as text};
 
 use crate::answer::result_code;
 use crate::capture::Flow;
-use fc_reflect::{
-    BodyError, Frame, FrameError, FrameFault, FrameId, HeaderValue, Message, Reflector,
-};
+use fc_reflect::{Error, Frame, FrameFault, FrameId, HeaderValue, Message, Reflector};
 use fc_spec::model::{FrameKind, Operation};
 use scan::{Piece, Scanner};
 use std::collections::HashMap;
@@ -64,47 +62,9 @@ pub struct Record<'m> {
     /// The message, or `None` for an invalid frame, an unreadable envelope or a stream without JSON.
     pub message: Option<Message<'m>>,
     /// The error, or `None` if the frame and its body are valid. The first failed check determines it.
-    pub error: Option<RecordError>,
+    pub error: Option<Error>,
     /// The request, if this is its response.
     pub request: Option<Request>,
-}
-
-/// An error in a record.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RecordError {
-    /// The frame is invalid.
-    Frame(FrameError),
-    /// The body is invalid.
-    Body(BodyError),
-}
-
-impl RecordError {
-    /// Returns the name, as in all products of the spec.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Frame(error) => error.fault.name(),
-            Self::Body(error) => error.name(),
-        }
-    }
-
-    /// Returns the path in the body, or an empty string for an error of the frame or the whole body.
-    #[must_use]
-    pub fn path(&self) -> &str {
-        match self {
-            Self::Frame(_) => "",
-            Self::Body(error) => error.path(),
-        }
-    }
-
-    /// Returns the found and the expected content.
-    #[must_use]
-    pub fn detail(&self) -> &str {
-        match self {
-            Self::Frame(error) => &error.detail,
-            Self::Body(error) => error.detail(),
-        }
-    }
 }
 
 impl Record<'_> {
@@ -289,14 +249,15 @@ fn record<'m>(
             record.request = pairs.pair(flow, frame.id, piece.offset, time);
             if frame.is_json() {
                 let message = reflector.message(frame.operation, frame.id.direction, &frame.data);
-                match message {
-                    Ok(message) => {
-                        let error = message.body.as_ref().err().cloned();
-                        record.error = error.map(RecordError::Body);
-                        record.message = Some(message);
-                    }
-                    Err(error) => record.error = Some(RecordError::Body(error)),
-                }
+                let error = match &message {
+                    Ok(message) => message.body.as_ref().err(),
+                    Err(error) => Some(error),
+                };
+                record.error = error.map(|error| Error::Body {
+                    frame: frame.id,
+                    error: error.clone(),
+                });
+                record.message = message.ok();
             }
             record.frame = Some(frame);
         }
@@ -308,7 +269,7 @@ fn record<'m>(
                 record.header = reflector.header(&piece.bytes);
             }
             record.operation = error.frame.and_then(|id| reflector.operation(id));
-            record.error = Some(RecordError::Frame(error));
+            record.error = Some(Error::Frame(error));
         }
     }
     record

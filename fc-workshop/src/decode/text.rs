@@ -1,7 +1,7 @@
 //! Records as text for people.
 
-use super::{Record, RecordError, error_text, milliseconds};
-use fc_reflect::{About, HeaderContent, HeaderValue, Key, Leniency, Node, Value, walk};
+use super::{Record, error_text, milliseconds};
+use fc_reflect::{About, Error, HeaderContent, HeaderValue, Key, Leniency, Node, Value, walk};
 use fc_spec::model::{
     Direction, EncodingRole, EnvelopeRole, HeaderRole, Lang, Model, Number, Scalar,
 };
@@ -26,7 +26,7 @@ pub fn tree(record: &Record<'_>, model: &Model, lang: Lang) -> String {
         lang,
     };
     tree.header(record);
-    if let Some(error @ RecordError::Frame(_)) = &record.error {
+    if let Some(error @ Error::Frame(_)) = &record.error {
         tree.error(error);
         return tree.out;
     }
@@ -143,7 +143,7 @@ impl Tree<'_> {
                 self.nodes(body, base);
             }
         }
-        if let Some(error @ RecordError::Body(fault)) = &record.error {
+        if let Some(error @ Error::Body { error: fault, .. }) = &record.error {
             let at = base.saturating_add(fault.offset());
             let found = excerpt(&frame.data, fault.offset());
             let mark = self.lang.pick("此处", "here");
@@ -237,7 +237,7 @@ impl Tree<'_> {
         self.out.push('\n');
     }
 
-    fn error(&mut self, error: &RecordError) {
+    fn error(&mut self, error: &Error) {
         let name = error.name();
         let text = error_text::text(name, self.lang).unwrap_or(name);
         let label = self.lang.pick("错误：", "error: ");

@@ -1,8 +1,8 @@
 //! Deviations inside a message.
 
 use super::{DeviationKind, Found, Moment, Place, kind, of_all_items, place};
-use crate::decode::{Record, RecordError, scalar};
-use fc_reflect::{About, Key, Node, Value as Content};
+use crate::decode::{Record, scalar};
+use fc_reflect::{About, Error, Key, Node, Value as Content};
 use fc_spec::model::{Model, Type};
 use serde_json::Value;
 
@@ -13,9 +13,12 @@ pub(super) fn compare<'m>(model: &'m Model, record: &Record<'m>, found: &mut Fou
             path: of_all_items(error.path()),
             ..place(record, kind(error))
         };
-        found.add_at(&Moment::of(record), place, || match error {
-            RecordError::Frame(error) => (String::new(), error.detail.clone()),
-            RecordError::Body(error) => (value_at(record, error.path()), error.detail().to_owned()),
+        found.add_at(&Moment::of(record), place, || {
+            let example = match error {
+                Error::Frame(_) => String::new(),
+                Error::Body { .. } => value_at(record, error.path()),
+            };
+            (example, error.detail().to_owned())
         });
     }
     if record.frame.is_none() {

@@ -16,9 +16,9 @@ pub use suggest::suggest;
 pub use text::deviation as text;
 
 use crate::capture::Flow;
-use crate::decode::{Record, RecordError};
+use crate::decode::Record;
 use exchange::Exchanges;
-use fc_reflect::{BodyErrorKind, FrameFault};
+use fc_reflect::{BodyErrorKind, Error, FrameFault};
 use fc_spec::model::{Direction, Model, Operation};
 use process::Processes;
 use std::collections::HashMap;
@@ -247,10 +247,10 @@ fn place(record: &Record<'_>, kind: DeviationKind) -> Place {
 }
 
 /// Returns the kind of the error in a record.
-fn kind(error: &RecordError) -> DeviationKind {
+fn kind(error: &Error) -> DeviationKind {
     match error {
-        RecordError::Frame(error) => DeviationKind::Frame(error.fault),
-        RecordError::Body(error) => DeviationKind::Body(error.kind()),
+        Error::Frame(error) => DeviationKind::Frame(error.fault),
+        Error::Body { error, .. } => DeviationKind::Body(error.kind()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The last frames of a proxy, with counts and latencies.
 
 use crate::capture::Flow;
-use crate::decode::{Record, RecordError, clock};
+use crate::decode::{Record, clock};
 use crate::fault::FaultKind;
 use fc_reflect::FrameId;
 use fc_spec::model::{Direction, KindRole, Lang};
@@ -97,7 +97,7 @@ impl Traffic {
         let direction = record.id.map(|id| id.direction);
         let (sender, kind) = side(role, direction, lang);
         let elapsed = record.request.and_then(|request| request.elapsed);
-        let error = record.error.as_ref().map(RecordError::name);
+        let error = record.error.as_ref().map(fc_reflect::Error::name);
         match (role, direction) {
             (Some(KindRole::Command), Some(Direction::Response)) => {
                 self.calls += 1;
