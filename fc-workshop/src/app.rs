@@ -12,7 +12,6 @@ use fc_spec::model::{Operation, ResultRole, Text, Value};
 use fc_spec::text;
 use std::cell::RefCell;
 use std::io;
-use std::pin::pin;
 use std::time::Duration;
 use tokio::sync::mpsc::Receiver;
 use tokio::sync::mpsc::error::TryRecvError;
@@ -56,10 +55,8 @@ pub type Sink<'o, 'm> = dyn FnMut(Event<'_, 'm>) -> io::Result<()> + 'o;
 pub struct App<'r, 'm> {
     reflector: &'m Reflector<'m>,
     settings: &'r Settings,
-    /// The connection to the command port; `None` after its end.
-    client: Option<Client<'m>>,
+    client: Client<'m>,
     data: Client<'m>,
-    steps: Option<Receiver<()>>,
 }
 
 impl<'r, 'm> App<'r, 'm> {
@@ -75,54 +72,39 @@ impl<'r, 'm> App<'r, 'm> {
         Ok(Self {
             reflector,
             settings,
-            client: Some(Client::connect(reflector, &settings.commands, wait).await?),
+            client: Client::connect(reflector, &settings.commands, wait).await?,
             data: Client::connect(reflector, &settings.data, wait).await?,
-            steps: None,
         })
-    }
-
-    /// Makes each command wait for a step. After the last step, the commands go on by themselves.
-    #[must_use]
-    pub fn with_steps(mut self, steps: Receiver<()>) -> Self {
-        self.steps = Some(steps);
-        self
     }
 
     /// Plays the app that a scenario expects, until `end` is ready or, with [`Settings::expect`], until it is over.
     /// Returns the number of deviations of the robot.
+    ///
+    /// With `steps`, each command waits for a step. After the last step, the commands go on by themselves.
     ///
     /// # Errors
     /// The error of `sink`.
     pub async fn run(
         self,
         scenario: &Scenario,
+        steps: Option<Receiver<()>>,
         sink: &mut Sink<'_, 'm>,
         end: impl Future<Output = ()>,
     ) -> io::Result<usize> {
-        let Self {
-            reflector,
-            settings,
-            client,
-            data,
-            steps,
-        } = self;
+        let (reflector, settings) = (self.reflector, self.settings);
         let sink = &RefCell::new(sink);
         let mut player = Player {
             reflector,
             settings,
-            client,
+            client: Some(self.client),
             steps,
             sink,
             deviations: 0,
         };
-        let ended = {
-            let mut steps = pin!(player.play(scenario));
-            let mut received = pin!(receive(reflector, settings, data, sink));
-            tokio::select! {
-                () = end => Ok(()),
-                ended = &mut steps => ended,
-                ended = &mut received => ended,
-            }
+        let ended = tokio::select! {
+            () = end => Ok(()),
+            ended = player.play(scenario) => ended,
+            ended = receive(reflector, settings, self.data, sink) => ended,
         };
         ended.map(|()| player.deviations)
     }

@@ -96,14 +96,10 @@ pub fn run(
                 return Ok(Status::Unanswered);
             }
         };
-        let app = if options.app.step {
-            app.with_steps(steps())
-        } else {
-            app
-        };
+        let steps = options.app.step.then(steps);
         let mut interrupt = Interrupt::new()?;
         let sink = &mut |event: Event<'_, '_>| show(reflector, options.app.format, &event);
-        let deviations = app.run(&scenario, sink, interrupt.next()).await?;
+        let deviations = app.run(&scenario, steps, sink, interrupt.next()).await?;
         if !options.expect {
             return Ok(Status::Fine);
         }

@@ -179,7 +179,9 @@ fn play(model: &Model, scenario: &Scenario, events: &[Expected]) -> (Option<Verd
     let reflector = Reflector::new(model);
     let deviations = block_on(async {
         let app = App::connect(&reflector, &settings).await.unwrap();
-        app.run(&part, &mut |_| Ok(()), pending()).await.unwrap()
+        app.run(&part, None, &mut |_| Ok(()), pending())
+            .await
+            .unwrap()
     });
     (mock.verdict(), deviations.unwrap())
 }
