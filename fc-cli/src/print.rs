@@ -9,9 +9,8 @@ use fc_spec::model::{DumpError, ProjectionError};
 use fc_spec::retire::RetireError;
 use fc_spec::scaffold::ScaffoldError;
 use fc_spec::source::Sources;
-use fc_workshop::arguments::ArgumentError;
 use fc_workshop::client::ClientError;
-use fc_workshop::fault::FaultError;
+use fc_workshop::error::InputError;
 use fc_workshop::listen::ListenError;
 
 use crate::lang::{in_lang, lang, said};
@@ -99,10 +98,9 @@ fn words(failure: &(dyn Error + 'static)) -> String {
         SettleError,
         TargetError,
         VersionError,
-        ArgumentError,
         ClientError,
-        ListenError,
-        FaultError
+        InputError,
+        ListenError
     );
     failure.to_string()
 }

@@ -1,31 +1,18 @@
 //! Arguments of a call as text: `key=value` with the keys and names of the spec.
 
+use crate::error::InputError;
 use crate::paths;
 use fc_reflect::sample::constraint::on_the_wire;
 use fc_spec::model::{
     EnumType, Field, Model, Number, StructRef, StructType, Text, Type, TypeShape, Value, WireForm,
 };
-use fc_spec::{text, text_error};
+use fc_spec::text;
 
 /// The largest index of a list in a key.
 const MOST_ITEMS: usize = 4096;
 
 /// The least similarity of a suggested key, from 0 to 1.
 const SIMILAR: f64 = 0.8;
-
-/// An argument that does not fit the spec.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ArgumentError(Text);
-
-impl ArgumentError {
-    /// Returns the message in both languages.
-    #[must_use]
-    pub fn text(&self) -> &Text {
-        &self.0
-    }
-}
-
-text_error!(ArgumentError);
 
 /// Reads the values of arguments by the types of a model.
 #[derive(Clone, Copy, Debug)]
@@ -44,17 +31,17 @@ impl<'m> Arguments<'m> {
     /// indexes into lists, such as `list[0]` or `list.0`.
     ///
     /// # Errors
-    /// [`ArgumentError`] for an unknown key, or a value of another type.
+    /// [`InputError`] for an unknown key, or a value of another type.
     pub fn object<'t>(
         self,
         body: &StructRef,
         arguments: impl IntoIterator<Item = &'t str>,
-    ) -> Result<Value, ArgumentError> {
+    ) -> Result<Value, InputError> {
         let shape = self.model.types.structure(body);
         let mut object = Value::Object(Vec::new());
         for argument in arguments {
             let Some((key, text)) = argument.split_once('=') else {
-                return Err(ArgumentError(text!(
+                return Err(InputError(text!(
                     "参数应为 `键=值`，实际为 `{argument}`",
                     "expected `key=value`, found `{argument}`"
                 )));
@@ -75,7 +62,7 @@ impl<'m> Arguments<'m> {
         steps: &[&str],
         key: &str,
         text: &str,
-    ) -> Result<(), ArgumentError> {
+    ) -> Result<(), InputError> {
         let Some((step, rest)) = steps.split_first() else {
             return Ok(());
         };
@@ -97,7 +84,7 @@ impl<'m> Arguments<'m> {
         steps: &[&str],
         key: &str,
         text: &str,
-    ) -> Result<(), ArgumentError> {
+    ) -> Result<(), InputError> {
         let Some((step, rest)) = steps.split_first() else {
             let read = self.value(ty, text);
             let read = read.ok_or_else(|| self.wrong_value(ty, key, text))?;
@@ -108,7 +95,7 @@ impl<'m> Arguments<'m> {
             let shapes = paths::shapes(self.model, ty);
             let mut fitting = shapes.iter().filter(|shape| named(shape, step).is_some());
             let Some(shape) = fitting.next().or(shapes.first()) else {
-                return Err(ArgumentError(text!(
+                return Err(InputError(text!(
                     "`{key}`：`{step}` 之前的值不是对象",
                     "`{key}`: the value before `{step}` is not an object"
                 )));
@@ -119,7 +106,7 @@ impl<'m> Arguments<'m> {
             return self.set_key(shape, value, steps, key, text);
         };
         let index: usize = step.parse().map_err(|_| {
-            ArgumentError(text!(
+            InputError(text!(
                 "`{key}`：`{step}` 应为列表中从 0 开始的序号",
                 "`{key}`: expected an index from 0 instead of `{step}`"
             ))
@@ -131,7 +118,7 @@ impl<'m> Arguments<'m> {
             return Ok(());
         };
         if index >= MOST_ITEMS {
-            return Err(ArgumentError(text!(
+            return Err(InputError(text!(
                 "`{key}`：序号应小于 {MOST_ITEMS}",
                 "`{key}`: expected an index below {MOST_ITEMS}"
             )));
@@ -174,9 +161,9 @@ impl<'m> Arguments<'m> {
         })
     }
 
-    fn wrong_value(self, ty: &Type, key: &str, text: &str) -> ArgumentError {
+    fn wrong_value(self, ty: &Type, key: &str, text: &str) -> InputError {
         let expected = self.expected(ty);
-        ArgumentError(text!(
+        InputError(text!(
             "`{key}` 应为{expected}，实际为 `{text}`",
             "expected {expected} for `{key}`, found `{text}`",
             expected = expected
@@ -232,10 +219,10 @@ fn named<'s>(shape: &'s StructType, key: &str) -> Option<&'s Field> {
     fields.find(|field| field.wire == key || field.name == key)
 }
 
-fn unknown_key(shape: &StructType, step: &str, key: &str) -> ArgumentError {
+fn unknown_key(shape: &StructType, step: &str, key: &str) -> InputError {
     let known = Text::listed(shape.fields.iter().map(|field| &field.wire));
     if shape.fields.is_empty() {
-        return ArgumentError(text!(
+        return InputError(text!(
             "`{key}`：规范在这里没有键；未知的键用 --json 发送",
             "`{key}`: the spec has no keys here; send unknown keys with --json"
         ));
@@ -249,7 +236,7 @@ fn unknown_key(shape: &StructType, step: &str, key: &str) -> ArgumentError {
     let similar = similar.map_or_else(Text::default, |wire| {
         text!("是否要写 `{wire}`？", "did you mean `{wire}`? ")
     });
-    ArgumentError(text!(
+    InputError(text!(
         "`{key}`：没有键 `{step}`；{similar}可用的键：{known}",
         "`{key}`: there is no key `{step}`; {similar}the keys are {known}",
         similar = similar,

@@ -14,6 +14,7 @@ pub mod connection;
 pub mod decode;
 pub mod drift;
 mod dump;
+pub mod error;
 pub mod facts;
 pub mod fault;
 pub mod listen;

@@ -163,6 +163,7 @@ const CRATES: &[Crate] = &[
     Crate {
         name: "fc-workshop",
         rooms: &[
+            "error",
             "facts",
             "paths",
             "dump",

@@ -1,7 +1,7 @@
 //! Reads hexadecimal text, with or without positions and characters, as `xxd` and other tools print it.
 
-use super::input::InputError;
 use crate::dump::{columns, positioned};
+use crate::error::InputError;
 use fc_spec::text;
 
 /// The maximum length of a line with a position. A longer line contains digits only.
@@ -47,7 +47,7 @@ impl HexText {
     pub fn finish(&mut self, out: &mut Vec<u8>) -> Result<(), InputError> {
         self.end_line(out)?;
         if self.half.is_some() {
-            return Err(InputError::new(text!(
+            return Err(InputError(text!(
                 "最后一个字节只有一个十六进制数字；请补全输入",
                 "the last byte has one hexadecimal digit; complete the input"
             )));
@@ -64,7 +64,7 @@ impl HexText {
         let trimmed = line.trim_ascii();
         if trimmed == b"*" {
             let number = self.number;
-            return Err(InputError::new(text!(
+            return Err(InputError(text!(
                 "第 {number} 行省略了重复的行；用 `hexdump -v` 重新输出",
                 "line {number} stands for repeated lines; print them with `hexdump -v`"
             )));
@@ -99,7 +99,7 @@ impl HexText {
                 (None, _) => {
                     let number = self.number.max(1);
                     let found = byte.escape_ascii().to_string();
-                    return Err(InputError::new(text!(
+                    return Err(InputError(text!(
                         "第 {number} 行的 `{found}` 不是十六进制数字；用 --input 指定格式",
                         "`{found}` in line {number} is not a hexadecimal digit; name the format with --input"
                     )));

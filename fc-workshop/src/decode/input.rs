@@ -1,12 +1,13 @@
 //! Detects the format of an input and turns it into bytes.
 
 use super::hex::HexText;
+use crate::error::InputError;
 use base64::Engine as _;
 use base64::alphabet;
 use base64::engine::DecodePaddingMode;
 use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
-use fc_spec::model::{Model, Text};
-use fc_spec::{text, text_error};
+use fc_spec::model::Model;
+use fc_spec::text;
 
 /// A format of recorded bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,24 +37,6 @@ const CAPTURES: [[u8; 4]; 5] = [
     [0x4D, 0x3C, 0xB2, 0xA1],
     [0x0A, 0x0D, 0x0D, 0x0A],
 ];
-
-/// An input that cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct InputError(Text);
-
-impl InputError {
-    pub(super) fn new(text: Text) -> Self {
-        Self(text)
-    }
-
-    /// Returns the message in both languages.
-    #[must_use]
-    pub fn text(&self) -> &Text {
-        &self.0
-    }
-}
-
-text_error!(InputError);
 
 impl Format {
     /// Returns the format of an input that begins with these bytes.
@@ -148,7 +131,7 @@ fn decode_base64(kept: &mut Vec<u8>, count: usize, out: &mut Vec<u8>) -> Result<
     let groups = digits.split_inclusive(|digit| *digit == b'=');
     for group in groups.filter(|group| *group != b"=") {
         BASE64.decode_vec(group, out).map_err(|_| {
-            InputError::new(text!(
+            InputError(text!(
                 "输入不是 base64；用 --input 指定格式",
                 "the input is not base64; name its format with --input"
             ))

@@ -14,7 +14,7 @@ mod source;
 mod text;
 
 pub use error_text::text as error_text;
-pub use input::{Format, InputError};
+pub use input::Format;
 pub use json::line as json;
 pub(crate) use json::milliseconds;
 pub use pair::Request;

@@ -2,8 +2,9 @@
 
 use super::hex::HexText;
 use super::input::Unpacker;
-use super::{Decoder, Format, InputError, Record};
+use super::{Decoder, Format, Record};
 use crate::capture::{self, CaptureError, Event, Flow, Ports, Seen};
+use crate::error::InputError;
 use fc_reflect::Reflector;
 use fc_spec::text;
 use std::io::{self, Cursor, ErrorKind, Read};
@@ -109,7 +110,7 @@ fn read_recording<'m>(
             "the recording is damaged; repair it with `mcap recover`"
         ),
     };
-    Err(InputError::new(error).into())
+    Err(InputError(error).into())
 }
 
 #[cfg(not(feature = "record"))]
@@ -118,7 +119,7 @@ fn read_recording<'m>(
     _input: impl Read,
     _sink: &mut dyn FnMut(&Record<'m>) -> io::Result<()>,
 ) -> Result<(), DecodeError> {
-    Err(InputError::new(text!(
+    Err(InputError(text!(
         "这个 fcproto 不能读 MCAP；用 --features record 安装",
         "this fcproto cannot read MCAP; install it with --features record"
     ))
@@ -199,5 +200,5 @@ fn captured(read: Result<Seen, CaptureError>, ports: &Ports) -> Result<(), Decod
             "the input is not intact pcap or pcapng; name its format with --input"
         ),
     };
-    Err(InputError::new(error).into())
+    Err(InputError(error).into())
 }

@@ -5,8 +5,6 @@
 mod change;
 mod read;
 
-pub use read::FaultError;
-
 use crate::arguments::json;
 use crate::facts;
 use crate::stream::Piece;

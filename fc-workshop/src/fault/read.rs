@@ -1,8 +1,9 @@
 //! Faults as text: `KIND[=VALUE][:SELECTOR]…`, such as `delay=200:get_level:10%`.
 
 use super::{Fault, FaultKind, When};
-use fc_spec::model::{Model, Text};
-use fc_spec::{text, text_error};
+use crate::error::InputError;
+use fc_spec::model::Model;
+use fc_spec::text;
 use std::num::NonZeroU32;
 use std::time::Duration;
 
@@ -13,26 +14,12 @@ const KINDS: &str = "delay=MS, drop-acknowledgement, duplicate-response, wrong-i
 /// The longest delay in milliseconds.
 const LONGEST: u64 = 3_600_000;
 
-/// A fault that cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FaultError(Text);
-
-impl FaultError {
-    /// Returns the message in both languages.
-    #[must_use]
-    pub fn text(&self) -> &Text {
-        &self.0
-    }
-}
-
-text_error!(FaultError);
-
 impl Fault {
     /// Reads a fault. Operations have the names of the model.
     ///
     /// # Errors
-    /// [`FaultError`] for an unknown kind, operation or selector.
-    pub fn read(model: &Model, text: &str) -> Result<Self, FaultError> {
+    /// [`InputError`] for an unknown kind, operation or selector.
+    pub fn read(model: &Model, text: &str) -> Result<Self, InputError> {
         let mut parts = text.split(':');
         let mut fault = Self {
             kind: kind(parts.next().unwrap_or_default())?,
@@ -50,7 +37,7 @@ impl Fault {
     }
 }
 
-fn kind(text: &str) -> Result<FaultKind, FaultError> {
+fn kind(text: &str) -> Result<FaultKind, InputError> {
     let (name, value) = match text.split_once('=') {
         Some((name, value)) => (name, Some(value)),
         None => (text, None),
@@ -65,7 +52,7 @@ fn kind(text: &str) -> Result<FaultKind, FaultError> {
         _ => None,
     };
     found.ok_or_else(|| {
-        FaultError(text!(
+        InputError(text!(
             "没有故障 `{text}`；可用的有：{KINDS}",
             "there is no fault `{text}`; the faults are {KINDS}"
         ))
@@ -73,9 +60,9 @@ fn kind(text: &str) -> Result<FaultKind, FaultError> {
 }
 
 /// Reads a selector of frames by their number. Returns `None` for another selector.
-fn when(part: &str) -> Result<Option<When>, FaultError> {
+fn when(part: &str) -> Result<Option<When>, InputError> {
     let wrong = || {
-        FaultError(text!(
+        InputError(text!(
             "`{part}` 不是选择条件；例如 `10%`、`every=5`、`only=3`、`after=3`",
             "`{part}` selects no frames; write for example `10%`, `every=5`, `only=3` or `after=3`"
         ))
@@ -97,14 +84,14 @@ fn when(part: &str) -> Result<Option<When>, FaultError> {
     when.ok_or_else(wrong).map(Some)
 }
 
-fn code(model: &Model, part: &str) -> Result<u16, FaultError> {
+fn code(model: &Model, part: &str) -> Result<u16, InputError> {
     let hex = part.strip_prefix("0x").or_else(|| part.strip_prefix("0X"));
     if let Some(code) = hex.and_then(|hex| u16::from_str_radix(hex, 16).ok()) {
         return Ok(code);
     }
     let operation = model.operation(part);
     operation.and_then(|it| it.code.value).ok_or_else(|| {
-        FaultError(text!(
+        InputError(text!(
             "没有带功能码的接口 `{part}`；`fcproto codes` 列出全部接口",
             "there is no operation `{part}` with a code; `fcproto codes` lists them"
         ))
