@@ -4,10 +4,8 @@ use super::{DeviationKind, Found, Moment, Place, place};
 use crate::capture::Flow;
 use crate::decode::Record;
 use fc_reflect::{About, Node, Value};
-use fc_spec::model::{
-    Cadence, EnumType, EnumValue, Exchange, Kind, Model, Operation, StateOrder, Step,
-};
-use std::collections::HashMap;
+use fc_spec::model::{Cadence, EnumType, Exchange, Kind, Model, Operation, StateOrder, Step};
+use std::collections::{BTreeSet, HashMap};
 use std::time::Duration;
 
 /// Processes that are followed at the same time.
@@ -20,7 +18,7 @@ pub(super) const ARROW: &str = " → ";
 const LATE: u32 = 2;
 
 /// The reports of a process: their flow, their operation, and the values of the keys that tie them to a command.
-type Process = (Option<Flow>, String, Vec<String>);
+type Process = (Option<Flow>, String, BTreeSet<String>);
 
 /// The last report of a process.
 #[derive(Clone, Debug, Default)]
@@ -64,7 +62,10 @@ impl<'m> Processes<'m> {
         );
         let earlier = self.last.get(&process).cloned();
         let path = state.as_deref();
-        let named = path.and_then(|path| at(body, path)).and_then(named);
+        let named = path.and_then(|path| match at(body, path)?.value {
+            Value::Enum { named, .. } => named,
+            _ => None,
+        });
         let trigger = cadence.as_ref().and_then(Cadence::field);
         let now = Last {
             time: record.time,
@@ -200,21 +201,14 @@ fn compare_times<'m>(
 }
 
 /// Returns the values of the keys that tie a report to a command.
-fn ties(model: &Model, report: &Operation, body: &[Node<'_>]) -> Vec<String> {
-    let set_off = |command: &'_ Operation| {
-        let mut set_offs = command.sets_off().iter();
-        set_offs
-            .find(|set_off| set_off.report == report.name)
-            .cloned()
-    };
-    let commands = model.commands_that_set_off(report);
-    let tied = commands.filter_map(set_off).flat_map(|it| it.tied);
-    let mut values: Vec<String> = tied
-        .filter_map(|tie| at(body, &tie.report).map(text))
-        .collect();
-    values.sort();
-    values.dedup();
-    values
+fn ties(model: &Model, report: &Operation, body: &[Node<'_>]) -> BTreeSet<String> {
+    let set_offs = model
+        .commands_that_set_off(report)
+        .flat_map(Operation::sets_off);
+    let set_offs = set_offs.filter(|set_off| set_off.report == report.name);
+    let ties = set_offs.flat_map(|set_off| &set_off.tied);
+    ties.filter_map(|tie| at(body, &tie.report).map(text))
+        .collect()
 }
 
 /// Returns the value at a path of wire keys.
@@ -226,14 +220,6 @@ fn at<'n, 'm>(nodes: &'n [Node<'m>], path: &[String]) -> Option<&'n Node<'m>> {
         Some(node)
     } else {
         at(node.children(), rest)
-    }
-}
-
-/// Returns the value of an enum, if the spec has it.
-fn named<'m>(node: &Node<'m>) -> Option<&'m EnumValue> {
-    match node.value {
-        Value::Enum { named, .. } => named,
-        _ => None,
     }
 }
 
