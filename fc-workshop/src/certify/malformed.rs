@@ -1,7 +1,7 @@
 //! Frames with errors.
 
 use super::line::{Evidence, Next, Step, Stop, deviates, gzip};
-use super::requests::refusal;
+use super::requests::refused;
 use super::robot::Stage;
 use crate::facts;
 use fc_reflect::{FrameId, Packing};
@@ -79,19 +79,7 @@ pub(super) async fn bad_digest(stage: &Stage<'_, '_>, evidence: &mut Evidence) -
     let (id, mut bytes) = stage.frame(1)?;
     let role = HeaderRole::Digest;
     stage.reflector.overwrite(&mut bytes, role, 0xBAD);
-    protocol_error(stage, evidence, id, &bytes).await
-}
-
-/// Sends a frame that must be refused as a protocol error. The connection must stay.
-async fn protocol_error(
-    stage: &Stage<'_, '_>,
-    evidence: &mut Evidence,
-    id: FrameId,
-    bytes: &[u8],
-) -> Step {
-    let mut line = stage.connect(evidence).await?;
-    refusal(stage, &mut line, id, bytes, ResultRole::Protocol).await?;
-    stage.ask(&mut line, 2).await
+    refused(stage, evidence, id, &bytes, ResultRole::Protocol).await
 }
 
 /// Returns the frame of data that claims to be compressed, with this length after decompression.
@@ -110,7 +98,7 @@ fn packed(stage: &Stage<'_, '_>, data: &[u8], plain_length: u64) -> Step<(FrameI
 
 pub(super) async fn bad_gzip(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
     let (id, bytes) = packed(stage, b"not compressed", 100)?;
-    protocol_error(stage, evidence, id, &bytes).await
+    refused(stage, evidence, id, &bytes, ResultRole::Protocol).await
 }
 
 pub(super) async fn gzip_bomb(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {

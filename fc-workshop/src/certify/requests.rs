@@ -134,7 +134,8 @@ pub(super) async fn missing_key(stage: &Stage<'_, '_>, evidence: &mut Evidence) 
     if let Value::Object(entries) = &mut message {
         entries.retain(|(name, _)| name != key);
     }
-    refused(stage, evidence, id, message.to_string().as_bytes()).await
+    let frame = stage.plain(id, &message)?;
+    refused(stage, evidence, id, &frame, ResultRole::Invalid).await
 }
 
 pub(super) async fn wrong_type(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
@@ -142,46 +143,40 @@ pub(super) async fn wrong_type(stage: &Stage<'_, '_>, evidence: &mut Evidence) -
     // No required field takes a list of lists of bools.
     let inner = Value::Array(vec![Value::Array(vec![Value::Bool(true)])]);
     message.set(key, Value::Array(vec![inner]));
-    refused(stage, evidence, id, message.to_string().as_bytes()).await
+    let frame = stage.plain(id, &message)?;
+    refused(stage, evidence, id, &frame, ResultRole::Invalid).await
 }
 
 pub(super) async fn bad_json(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
     let (id, _) = stage.probe(1)?;
-    refused(stage, evidence, id, b"{\"no json").await
+    let frame = stage.seal(id, b"{\"no json", Packing::Plain)?;
+    refused(stage, evidence, id, &frame, ResultRole::Invalid).await
 }
 
-/// Sends a request that must be refused as invalid. The connection must stay.
-async fn refused(stage: &Stage<'_, '_>, evidence: &mut Evidence, id: FrameId, data: &[u8]) -> Step {
-    let frame = stage.seal(id, data, Packing::Plain)?;
-    let mut line = stage.connect(evidence).await?;
-    refusal(stage, &mut line, id, &frame, ResultRole::Invalid).await?;
-    stage.ask(&mut line, 2).await
-}
-
-/// Sends a frame that must be refused with a result. In a protocol without results, there is no response.
-pub(super) async fn refusal<'m>(
-    stage: &Stage<'_, 'm>,
-    line: &mut Line<'_, 'm>,
+/// Sends a frame that must be refused with a result. The connection must stay. In a protocol without results, there is no
+/// response.
+pub(super) async fn refused(
+    stage: &Stage<'_, '_>,
+    evidence: &mut Evidence,
     id: FrameId,
     frame: &[u8],
     role: ResultRole,
 ) -> Step {
+    let model = stage.model();
+    let mut line = stage.connect(evidence).await?;
     line.send(frame).await;
-    if stage.model().envelope.result_code().is_none() {
-        return Ok(());
+    if model.envelope.result_code().is_some() {
+        let outcome = line.response(id).await?;
+        let found = outcome.known.and_then(|known| known.role);
+        if let Some(expected) = facts::result(model, role).filter(|_| found != Some(role)) {
+            let (code, found) = (expected.code, outcome.code.unwrap_or(0));
+            return deviates(text!(
+                "应为结果码 {code}，实际为 {found}",
+                "expected the result {code}, found {found}"
+            ));
+        }
     }
-    let outcome = line.response(id).await?;
-    let Some(expected) = facts::result(stage.model(), role) else {
-        return Ok(());
-    };
-    if outcome.known.and_then(|known| known.role) == Some(role) {
-        return Ok(());
-    }
-    let (code, found) = (expected.code, outcome.code.unwrap_or(0));
-    deviates(text!(
-        "应为结果码 {code}，实际为 {found}",
-        "expected the result {code}, found {found}"
-    ))
+    stage.ask(&mut line, 2).await
 }
 
 pub(super) async fn unknown_code(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
@@ -201,9 +196,7 @@ pub(super) async fn unknown_code(stage: &Stage<'_, '_>, evidence: &mut Evidence)
         id: 1,
     };
     let frame = stage.seal(id, b"{}", Packing::Plain)?;
-    let mut line = stage.connect(evidence).await?;
-    refusal(stage, &mut line, id, &frame, ResultRole::Protocol).await?;
-    stage.ask(&mut line, 2).await
+    refused(stage, evidence, id, &frame, ResultRole::Protocol).await
 }
 
 pub(super) async fn half_closed(stage: &Stage<'_, '_>, evidence: &mut Evidence) -> Step {
