@@ -81,7 +81,7 @@ pub async fn serve<'m>(
     let mut count = 0;
     loop {
         tokio::select! {
-            () = &mut end => return proxy.watch.borrow_mut().finish(),
+            () = &mut end => return proxy.decoder.borrow_mut().finish(&mut proxy.seen()),
             app = listen::accept(&listeners.commands), if links.len() < most => {
                 count += 1;
                 links.push(proxy.link(app, &settings.commands, count));
@@ -119,33 +119,9 @@ where
 struct Proxy<'r, 'm, 's, 'o> {
     reflector: &'r Reflector<'m>,
     settings: &'r Settings,
-    watch: RefCell<Watch<'r, 'm, 's, 'o>>,
-}
-
-/// The observer of all connections.
-struct Watch<'r, 'm, 's, 'o> {
-    decoder: Decoder<'r, 'm>,
-    sink: &'s mut Sink<'o, 'm>,
-}
-
-impl<'m> Watch<'_, 'm, '_, '_> {
-    fn bytes(&mut self, flow: Flow, bytes: &[u8]) -> io::Result<()> {
-        let Self { decoder, sink } = self;
-        let time = SystemTime::now().duration_since(UNIX_EPOCH).ok();
-        let mut sink = |record: &Record<'m>| sink(Event::Record(record));
-        decoder.push(Some(flow), time, bytes, &mut sink)
-    }
-
-    fn close(&mut self, flow: Flow) -> io::Result<()> {
-        let Self { decoder, sink } = self;
-        let mut sink = |record: &Record<'m>| sink(Event::Record(record));
-        decoder.close(Some(flow), &mut sink)
-    }
-
-    fn finish(&mut self) -> io::Result<()> {
-        let Self { decoder, sink } = self;
-        decoder.finish(&mut |record| sink(Event::Record(record)))
-    }
+    /// The decoder of all connections.
+    decoder: RefCell<Decoder<'r, 'm>>,
+    sink: RefCell<&'s mut Sink<'o, 'm>>,
 }
 
 /// The reason why a relay ends before its sender has closed its side.
@@ -165,11 +141,18 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
         Self {
             reflector,
             settings,
-            watch: RefCell::new(Watch {
-                decoder: Decoder::new(reflector),
-                sink,
-            }),
+            decoder: RefCell::new(Decoder::new(reflector)),
+            sink: RefCell::new(sink),
         }
+    }
+
+    fn show(&self, event: Event<'_, 'm>) -> io::Result<()> {
+        self.sink.borrow_mut()(event)
+    }
+
+    /// Returns the receiver of the records.
+    fn seen(&self) -> impl FnMut(&Record<'m>) -> io::Result<()> {
+        |record| self.show(Event::Record(record))
     }
 
     /// Connects to the robot and forwards a connection until it ends.
@@ -178,10 +161,7 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
         let connected = timeout(wait, TcpStream::connect(robot)).await;
         let robot = match connected.unwrap_or_else(|_| Err(io::ErrorKind::TimedOut.into())) {
             Ok(stream) => stream,
-            Err(error) => {
-                let mut watch = self.watch.borrow_mut();
-                return (watch.sink)(Event::Unreachable(robot, &error));
-            }
+            Err(error) => return self.show(Event::Unreachable(robot, &error)),
         };
         // Without it, small frames only travel later.
         let _ = robot.set_nodelay(true);
@@ -203,9 +183,9 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
         if let Err(Stop::Sink(error)) = try_join(there, back).await {
             return Err(error);
         }
-        let mut watch = self.watch.borrow_mut();
-        watch.close(flow)?;
-        watch.close(flow.reversed())
+        let mut decoder = self.decoder.borrow_mut();
+        decoder.close(Some(flow), &mut self.seen())?;
+        decoder.close(Some(flow.reversed()), &mut self.seen())
     }
 
     /// Forwards one direction until its sender closes its side.
@@ -227,8 +207,10 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
             let read = reader.read(&mut buffer).await;
             let count = read.map_err(|_| Stop::Broken)?;
             let bytes = buffer.get(..count).unwrap_or_default();
-            let seen = self.watch.borrow_mut().bytes(flow, bytes);
-            seen.map_err(Stop::Sink)?;
+            let time = SystemTime::now().duration_since(UNIX_EPOCH).ok();
+            let mut seen = self.seen();
+            let pushed = (self.decoder.borrow_mut()).push(Some(flow), time, bytes, &mut seen);
+            pushed.map_err(Stop::Sink)?;
             match &mut link {
                 Some(link) => self.deliver(link, flow, bytes, &mut writer).await?,
                 None => (writer.write_all(bytes).await).map_err(|_| Stop::Broken)?,
@@ -264,8 +246,8 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
             let delivery = link.faults.deliver(&piece);
             if let (Ok(frame), false) = (&piece.frame, delivery.faults.is_empty()) {
                 let (id, kinds) = (frame.id, &delivery.faults);
-                let seen = (self.watch.borrow_mut().sink)(Event::Faults { flow, id, kinds });
-                seen.map_err(Stop::Sink)?;
+                let shown = self.show(Event::Faults { flow, id, kinds });
+                shown.map_err(Stop::Sink)?;
             }
             if write(&delivery, writer).await.is_err() || delivery.ends {
                 return Err(Stop::Broken);
