@@ -270,7 +270,8 @@ fn now() -> Instant {
     tokio::time::Instant::now().into_std()
 }
 
-async fn until(due: Option<Instant>) {
+/// Waits until a time, or forever.
+pub(crate) async fn until(due: Option<Instant>) {
     match due {
         Some(due) => tokio::time::sleep_until(due.into()).await,
         None => pending().await,

@@ -1,16 +1,19 @@
 //! Runs asynchronous work for a program without its own runtime.
 
 use std::io;
+use tokio::runtime::{Builder, Runtime};
 
 /// Runs a future to its end on this thread.
 ///
 /// # Errors
 /// The system gives no timer or no poller.
 pub fn block_on<T>(future: impl Future<Output = T>) -> io::Result<T> {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()?;
-    Ok(runtime.block_on(future))
+    Ok(runtime()?.block_on(future))
+}
+
+/// Creates a runtime for work on this thread.
+pub(crate) fn runtime() -> io::Result<Runtime> {
+    Builder::new_current_thread().enable_all().build()
 }
 
 /// Ctrl-C and, on Unix, SIGTERM. From its creation on, these no longer end the program at once.

@@ -8,9 +8,10 @@ mod process;
 mod robot;
 mod streams;
 
-use crate::connection::{Connection, Event};
+use crate::connection::{Connection, Event, until};
 use crate::facts;
 use crate::listen::{self, ListenError, Listeners};
+use crate::run;
 use crate::scenario::{Scenario, Verdict};
 use apps::{Apps, Report};
 use fc_reflect::Reflector;
@@ -114,7 +115,7 @@ async fn one(
         }
         tokio::select! {
             () = &mut end => return verdict,
-            () = until(over), if over.is_some() => return verdict,
+            () = until(over) => return verdict,
             app = listen::accept(&listeners.commands), if talks.len() < limits.connections => {
                 talks.push(stage.talk(app));
             }
@@ -246,13 +247,6 @@ impl<'m> Stage<'m> {
     }
 }
 
-async fn until(due: Option<Instant>) {
-    match due {
-        Some(due) => tokio::time::sleep_until(due.into()).await,
-        None => std::future::pending().await,
-    }
-}
-
 /// A mock in its own thread. It stops when it is dropped.
 #[derive(Debug)]
 pub struct Mock {
@@ -268,21 +262,18 @@ impl Mock {
     /// # Errors
     /// [`ListenError`] if it cannot listen.
     pub fn start(model: Model, settings: Settings) -> Result<Self, ListenError> {
-        let runtime = tokio::runtime::Builder::new_current_thread()
-            .enable_all()
-            .build()
-            .map_err(ListenError::System)?;
+        let runtime = run::runtime().map_err(ListenError::System)?;
         let listeners = runtime.block_on(Listeners::bind("127.0.0.1", 0, 0))?;
         let (commands, data) = listeners.addresses()?;
         let (stop, stopped) = oneshot::channel::<()>();
-        let run = move || {
+        let play = move || {
             runtime.block_on(serve(&model, &settings, vec![listeners], async {
                 // A dropped sender stops the mock, too.
                 let _ = stopped.await;
             }))
         };
         let thread = std::thread::Builder::new().name("mock".to_owned());
-        let thread = thread.spawn(run).map_err(ListenError::System)?;
+        let thread = thread.spawn(play).map_err(ListenError::System)?;
         Ok(Self {
             commands,
             data,
