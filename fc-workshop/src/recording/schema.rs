@@ -1,9 +1,9 @@
 //! JSON Schema of messages, as viewers of recordings read it: the root is an object, and references are internal.
 
+use crate::paths;
 use fc_reflect::sample::Samples;
 use fc_spec::model::{
-    Direction, EnumRepr, EnumType, Field, Model, OneOf, Operation, StructType, Type, TypeRef,
-    TypeShape, WireForm,
+    Direction, EnumRepr, EnumType, Field, Model, Operation, StructType, Type, TypeRef, WireForm,
 };
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -25,14 +25,10 @@ pub(super) fn of(model: &Model, operation: &Operation, direction: Direction) -> 
     }
     let mut definitions = Map::new();
     // A definition may want others.
-    while let Some(name) = schema
-        .wanted
-        .iter()
-        .find(|name| !definitions.contains_key(*name))
-        .cloned()
-    {
-        let definition = schema.definition(&name);
-        definitions.insert(name, definition);
+    while let Some(named) = schema.wanted.pop_first() {
+        if !definitions.contains_key(named.name()) {
+            definitions.insert(named.name().to_owned(), schema.definition(named));
+        }
     }
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -49,10 +45,10 @@ fn describe(property: &mut Value, text: &str) {
     }
 }
 
-/// A schema with the names of the types that it wants.
+/// A schema with the types that it wants.
 struct Schema<'m> {
     model: &'m Model,
-    wanted: BTreeSet<String>,
+    wanted: BTreeSet<TypeRef>,
 }
 
 impl Schema<'_> {
@@ -90,32 +86,18 @@ impl Schema<'_> {
     }
 
     fn named(&mut self, named: &TypeRef) -> Value {
-        if let TypeShape::Enum(shape) = &self.model.types.get(named).shape {
+        if let Some(shape) = self.model.types.get(named).shape.enumeration() {
             return enumeration(shape);
         }
-        let name = named.name().to_owned();
-        let reference = format!("#/$defs/{name}");
-        self.wanted.insert(name);
-        json!({ "$ref": reference })
+        self.wanted.insert(named.clone());
+        json!({ "$ref": format!("#/$defs/{}", named.name()) })
     }
 
-    fn definition(&mut self, name: &str) -> Value {
-        let model = self.model;
-        let shape = model.types.iter().find(|ty| ty.name == name);
-        match shape.map(|ty| &ty.shape) {
-            Some(TypeShape::Struct(shape)) => {
-                json!({ "type": "object", "properties": self.fields(shape) })
-            }
-            // Viewers know no alternatives, so the object has the keys of all variants.
-            Some(TypeShape::OneOf(OneOf { variants })) => {
-                let mut properties = Map::new();
-                for variant in variants {
-                    properties.extend(self.fields(model.types.structure(&variant.ty)));
-                }
-                json!({ "type": "object", "properties": properties })
-            }
-            Some(TypeShape::Enum(_)) | None => json!({}),
-        }
+    /// Viewers know no alternatives, so the object of a one-of has the keys of all variants.
+    fn definition(&mut self, named: TypeRef) -> Value {
+        let shapes = paths::shapes(self.model, &Type::Named(named)).into_iter();
+        let properties: Map<_, _> = shapes.flat_map(|shape| self.fields(shape)).collect();
+        json!({ "type": "object", "properties": properties })
     }
 }
 
