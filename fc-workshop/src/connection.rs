@@ -77,7 +77,7 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
             reflector,
             reader,
             writer,
-            received: FrameStream::new(),
+            received: FrameStream::default(),
             session: Session::new(facts::rules(model), &facts::limits(model), ack, first_id),
             out: Vec::new(),
             written: 0,

@@ -200,7 +200,7 @@ impl<'r, 'm, 's, 'o> Proxy<'r, 'm, 's, 'o> {
         let faults = Faults::new(self.reflector, faults, *seed, stream);
         let mut link = (!self.settings.faults.is_empty()).then(|| FaultyLink {
             faults,
-            frames: FrameStream::new(),
+            frames: FrameStream::default(),
         });
         let mut buffer = vec![0; READ];
         loop {

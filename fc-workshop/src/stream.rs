@@ -25,12 +25,6 @@ pub struct Piece<'m> {
 }
 
 impl FrameStream {
-    /// Creates an empty stream.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
     /// Returns the buffer for appending received bytes, with room for a read. Only append to it.
     pub fn room(&mut self) -> &mut Vec<u8> {
         self.received.drain(..self.taken);

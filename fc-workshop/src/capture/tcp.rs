@@ -38,7 +38,7 @@ pub(super) struct Flows<'p> {
     waiting: usize,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct State {
     /// The sequence number of the next byte.
     next: u32,
@@ -60,17 +60,6 @@ struct Later {
 }
 
 impl State {
-    fn new(next: u32) -> Self {
-        Self {
-            next,
-            later: VecDeque::new(),
-            waiting: 0,
-            end: None,
-            is_closed: false,
-            used: 0,
-        }
-    }
-
     /// Takes the bytes at a sequence number that follow those before, without those that came already. Returns
     /// `None` if earlier ones are missing.
     fn fresh<'b>(&mut self, sequence: u32, bytes: &'b [u8]) -> Option<&'b [u8]> {
@@ -137,7 +126,10 @@ impl<'p> Flows<'p> {
             self.make_room(receiver)?;
         }
         let state = self.states.entry(segment.flow);
-        let state = state.or_insert_with(|| State::new(first));
+        let state = state.or_insert_with(|| State {
+            next: first,
+            ..State::default()
+        });
         state.used = self.seen.wanted;
         if segment.fin {
             state.end = Some(first.wrapping_add(count(segment.payload)));

@@ -29,7 +29,19 @@ pub async fn app(
     let run = async {
         let accepted = timeout(wait, listeners.commands.accept()).await;
         let (stream, _) = accepted.ok()?.ok()?;
-        let mut app = App::new(reflector, &listeners.commands, wait, stream);
+        // Without it, small frames only travel later.
+        let _ = stream.set_nodelay(true);
+        let mut app = App {
+            reflector,
+            listener: &listeners.commands,
+            wait,
+            stream,
+            frames: FrameStream::default(),
+            evidence: Evidence::default(),
+            id: 0,
+            broken: None,
+            requests: 0,
+        };
         app.all(&mut |trial| {
             told(&trial);
             trials.push(trial);
@@ -60,28 +72,7 @@ struct App<'r, 'm> {
     requests: usize,
 }
 
-impl<'r, 'm> App<'r, 'm> {
-    fn new(
-        reflector: &'r Reflector<'m>,
-        listener: &'r TcpListener,
-        wait: Duration,
-        stream: TcpStream,
-    ) -> Self {
-        // Without it, small frames only travel later.
-        let _ = stream.set_nodelay(true);
-        Self {
-            reflector,
-            listener,
-            wait,
-            stream,
-            frames: FrameStream::new(),
-            evidence: Evidence::default(),
-            id: 0,
-            broken: None,
-            requests: 0,
-        }
-    }
-
+impl<'m> App<'_, 'm> {
     fn model(&self) -> &'m Model {
         self.reflector.model()
     }
@@ -247,7 +238,7 @@ impl<'r, 'm> App<'r, 'm> {
         };
         let _ = stream.set_nodelay(true);
         self.stream = stream;
-        self.frames = FrameStream::new();
+        self.frames = FrameStream::default();
         self.acknowledges(report).await
     }
 

@@ -107,7 +107,7 @@ impl<'r, 'm> Line<'r, 'm> {
                 Ok(Self {
                     reflector,
                     stream,
-                    frames: FrameStream::new(),
+                    frames: FrameStream::default(),
                     evidence,
                     acknowledges: true,
                     is_tolerant: false,

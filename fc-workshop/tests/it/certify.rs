@@ -119,7 +119,7 @@ impl<'m> Breaker<'m> {
         mut writer: impl AsyncWrite + Unpin,
         is_from_robot: bool,
     ) -> Result<(), Broken> {
-        let mut frames = FrameStream::new();
+        let mut frames = FrameStream::default();
         let mut reports = Vec::new();
         loop {
             let read = reader.read_buf(frames.room()).await;

@@ -15,7 +15,7 @@ fn piece<'m>(reflector: &Reflector<'m>, name: &str, direction: Direction, id: u3
     let message = (reflector.samples()).message(operation, direction, Profile::Example);
     let data = message.to_string();
     let bytes = reflector.seal(id, data.as_bytes(), Packing::Plain).unwrap();
-    let mut stream = FrameStream::new();
+    let mut stream = FrameStream::default();
     stream.room().extend_from_slice(&bytes);
     stream.next(reflector).unwrap().unwrap()
 }

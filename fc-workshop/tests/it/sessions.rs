@@ -118,7 +118,7 @@ fn run(script: &Script) -> Result<(), Failure> {
             given: &script.given,
             connection: Connection::new(&reflector, ours, script.given.first_id),
             wire,
-            received: FrameStream::new(),
+            received: FrameStream::default(),
             requests: Vec::new(),
             arriving: HashMap::new(),
             reports: HashMap::new(),
