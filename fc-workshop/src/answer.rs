@@ -68,29 +68,17 @@ pub enum Progress {
 /// A process that a call has started.
 #[derive(Clone, Debug)]
 pub struct Process<'m> {
-    model: &'m Model,
-    command: &'m Operation,
-    request: model::Value,
-    response: model::Value,
+    /// The model of the command.
+    pub model: &'m Model,
+    /// The command.
+    pub command: &'m Operation,
+    /// The request of the call.
+    pub request: model::Value,
+    /// The response to it.
+    pub response: model::Value,
 }
 
-impl<'m> Process<'m> {
-    /// Begins with the messages of a call.
-    #[must_use]
-    pub fn new(
-        model: &'m Model,
-        command: &'m Operation,
-        request: model::Value,
-        response: model::Value,
-    ) -> Self {
-        Self {
-            model,
-            command,
-            request,
-            response,
-        }
-    }
-
+impl Process<'_> {
     /// Returns the progress after a report, or `None` for a report of something else.
     ///
     /// A process ends with a final state. If the spec names none, it ends with a state that no other follows, or with the

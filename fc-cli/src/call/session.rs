@@ -108,12 +108,12 @@ impl<'m> Call<'_, 'm> {
         }
         match (self.follow, request.operation) {
             (Some(silence), Some(operation)) => {
-                let process = Process::new(
-                    self.reflector.model(),
-                    operation,
-                    value(&request.data),
-                    value(&frame.data),
-                );
+                let process = Process {
+                    model: self.reflector.model(),
+                    command: operation,
+                    request: value(&request.data),
+                    response: value(&frame.data),
+                };
                 self.follow(client, &process, silence).await
             }
             _ => Ok(Status::Fine),

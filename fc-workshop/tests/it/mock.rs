@@ -128,7 +128,12 @@ fn a_process_runs_from_its_start_to_its_end() {
         let mut app = App::connect(&reflector, &mock).await;
         let (_, response) = app.call("set_light", r#"{"lvl":7}"#).await;
         let command = model.operation("set_light").unwrap();
-        let process = Process::new(&model, command, Value::Null, response);
+        let process = Process {
+            model: &model,
+            command,
+            request: Value::Null,
+            response,
+        };
         let mut steps = Vec::new();
         loop {
             let frame = app.client.report(PATIENCE).await.unwrap();
