@@ -4,8 +4,9 @@ use crate::paths::{self, at};
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Reflector};
 use fc_spec::model::{
-    Cadence, EnumType, EnumValue, Exchange, Number, Operation, SetOff, Step, Type, Value,
+    Cadence, EnumType, EnumValue, Exchange, Field, Number, Operation, SetOff, Step, Type, Value,
 };
+use std::iter::successors;
 use std::time::Duration;
 
 /// The largest number of reports of one process.
@@ -45,49 +46,41 @@ pub(super) fn steps(
         Some(Cadence::WithinMs(most)) => pace.min(Duration::from_millis((*most).into())),
         Some(Cadence::OnChange(_) | Cadence::Step(_)) | None => pace,
     };
-    let changes = changes(reflector, report);
-    let messages = changes.into_iter().take(MOST_STEPS).map(|change| {
-        let mut message = base.clone();
-        for (path, value) in &change {
-            paths::set(&mut message, path, value);
-        }
-        message
-    });
+    let Some((path, values)) = changes(reflector, report) else {
+        let (after, message) = (pace, base);
+        return vec![ProcessStep { after, message }];
+    };
     let mut after = Duration::ZERO;
-    messages
-        .map(|message| {
-            after += pace;
-            ProcessStep { after, message }
-        })
-        .collect()
+    let steps = values.into_iter().take(MOST_STEPS).map(|value| {
+        after += pace;
+        let mut message = base.clone();
+        paths::set(&mut message, &path, &value);
+        ProcessStep { after, message }
+    });
+    steps.collect()
 }
 
-/// A path of wire keys, and the value there.
-type Change<'m> = Vec<(Vec<&'m str>, Value)>;
+/// The path of wire keys to the state or number that changes from one report to the next, and its values.
+type Changes<'m> = (Vec<&'m str>, Vec<Value>);
 
-/// Returns what changes from one report to the next: the state, or a number. Without either there is one report.
-fn changes<'m>(reflector: &Reflector<'m>, report: &'m Operation) -> Vec<Change<'m>> {
+/// Returns what changes from one report to the next, or `None` if there is one report.
+fn changes<'m>(reflector: &Reflector<'m>, report: &'m Operation) -> Option<Changes<'m>> {
     let model = reflector.model();
-    let Exchange::Report {
-        state, messages, ..
-    } = &report.exchange
-    else {
-        return Vec::new();
-    };
-    if let Some(path) = state
-        && let Some((_, shape)) = model.enum_at(&messages.request.ty, path)
+    let body = &report.body(Direction::Request)?.ty;
+    if let Exchange::Report { state, .. } = &report.exchange
+        && let Some(path) = state
+        && let Some((_, shape)) = model.enum_at(body, path)
     {
         let states = states(shape).into_iter();
-        return states
-            .map(|state| vec![(keys(path), Value::from(&state.wire))])
-            .collect();
+        let values = states.map(|state| Value::from(&state.wire));
+        return Some((keys(path), values.collect()));
     }
-    if let Some(Cadence::Step(step)) = report.cadence() {
-        let path: Vec<&str> = step.field.split('.').collect();
-        let numbers = numbers(reflector, report, step).into_iter();
-        return numbers.map(|number| vec![(path.clone(), number)]).collect();
-    }
-    vec![Vec::new()]
+    let Some(Cadence::Step(step)) = report.cadence() else {
+        return None;
+    };
+    let field = paths::field(model, body, &step.field);
+    let numbers = field.map_or_else(Vec::new, |field| numbers(reflector, field, step));
+    Some((step.field.split('.').collect(), numbers))
 }
 
 /// Returns the states of a process without an error, from its start to its end.
@@ -114,27 +107,17 @@ fn states(shape: &EnumType) -> Vec<&EnumValue> {
 
 /// Returns the numbers of a report that is sent at each step of a number: from its least to its largest value. Without a
 /// largest value, or if the steps are many, there are fewer.
-fn numbers(reflector: &Reflector<'_>, report: &Operation, step: &Step) -> Vec<Value> {
-    let body = report.body(Direction::Request);
-    let field = body.and_then(|body| paths::field(reflector.model(), &body.ty, &step.field));
-    let Some(field) = field else {
-        return Vec::new();
-    };
+fn numbers(reflector: &Reflector<'_>, field: &Field, step: &Step) -> Vec<Value> {
     let constraints = &field.details().constraints;
     let least = constraints.min.as_ref().map_or(0.0, Number::to_f64);
     let Some(most) = constraints.max.as_ref().map(Number::to_f64) else {
         return vec![reflector.samples().value_of(field)];
     };
     let by = step.by.to_f64().max((most - least) / 63.0);
-    let mut numbers = Vec::new();
-    let mut number = least;
-    while number < most && numbers.len() < MOST_STEPS - 1 {
-        numbers.push(number);
-        number += by;
-    }
-    numbers.push(most);
+    let numbers = successors(Some(least), |number| Some(number + by));
+    let numbers = numbers.take_while(|number| *number < most);
     let is_int = matches!(field.ty.item(), Type::Int(_));
-    let numbers = numbers.into_iter().map(|number| {
+    let numbers = numbers.take(MOST_STEPS - 1).chain([most]).map(|number| {
         #[allow(
             clippy::cast_possible_truncation,
             reason = "it is within the range of its type"
