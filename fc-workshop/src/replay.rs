@@ -10,8 +10,14 @@ use fc_spec::model::{Direction, KindRole, Model, ResultRole, Value};
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
-/// The most requests and acknowledgements of a scenario.
+/// The most requests, reports and acknowledgements of a scenario.
 const MOST: usize = 100_000;
+
+/// The most bytes in their bodies.
+const MOST_BYTES: usize = 64 << 20;
+
+/// The longest wait of a replay. The times of a damaged recording may be too far apart for the clock.
+const LONGEST: Duration = Duration::from_secs(365 * 24 * 60 * 60);
 
 /// The time that a replay may take longer than its recording.
 const MORE: Duration = Duration::from_secs(30);
@@ -28,6 +34,8 @@ pub struct Recorded<'m> {
     first: Option<Duration>,
     /// The time of the last response or report.
     last: Option<Duration>,
+    /// The number of bytes in the bodies of all frames.
+    bytes: usize,
     is_full: bool,
 }
 
@@ -47,6 +55,7 @@ impl<'m> Recorded<'m> {
             reports: HashSet::new(),
             first: None,
             last: None,
+            bytes: 0,
             is_full: false,
         }
     }
@@ -60,13 +69,15 @@ impl<'m> Recorded<'m> {
         let Some(message) = std::str::from_utf8(&frame.data).ok().and_then(json) else {
             return;
         };
-        if self.scenario.expect.len() >= MOST {
-            self.is_full = true;
+        self.bytes = self.bytes.saturating_add(frame.data.len());
+        let count = self.scenario.expect.len() + self.reports.len();
+        self.is_full |= count >= MOST || self.bytes > MOST_BYTES;
+        if self.is_full {
             return;
         }
         self.first = self.first.or(record.time);
         if let Some((first, time)) = self.first.zip(record.time) {
-            self.scenario.within = MORE.saturating_add(time.saturating_sub(first));
+            self.scenario.within = MORE + possible(time.saturating_sub(first));
         }
         let name = operation.name.clone();
         match (frame.kind.role, id.direction) {
@@ -119,9 +130,8 @@ impl<'m> Recorded<'m> {
         };
         let action = &mut rule.action;
         action.silent = false;
-        action.delay = (record.request)
-            .and_then(|request| request.elapsed)
-            .unwrap_or_default();
+        let elapsed = record.request.and_then(|request| request.elapsed);
+        action.delay = possible(elapsed.unwrap_or_default());
         match record.result() {
             Some(code) if Some(code) != success => action.refuse = Some(code),
             _ => action.answer = Some(answer),
@@ -138,7 +148,7 @@ impl<'m> Recorded<'m> {
             reports.push(ScriptedReport {
                 report,
                 body,
-                after: after.unwrap_or_default(),
+                after: possible(after.unwrap_or_default()),
             });
         }
     }
@@ -153,9 +163,14 @@ impl<'m> Recorded<'m> {
         body
     }
 
-    /// Returns the scenario, or `None` if the recording has too many frames for one.
+    /// Returns the scenario, or `None` if the recording is too long for one.
     #[must_use]
     pub fn finish(self) -> Option<Scenario> {
         (!self.is_full).then_some(self.scenario)
     }
+}
+
+/// Cuts a wait to [`LONGEST`].
+fn possible(wait: Duration) -> Duration {
+    wait.min(LONGEST)
 }

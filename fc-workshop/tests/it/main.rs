@@ -20,6 +20,7 @@ mod guarantees;
 #[path = "../../../fc-spec/tests/it/json_schema.rs"]
 mod json_schema;
 mod mock;
+mod replay;
 mod scenarios;
 mod sessions;
 mod support;
