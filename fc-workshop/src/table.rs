@@ -62,7 +62,7 @@ fn shown(node: &Node<'_>, lang: Lang) -> Option<String> {
             let count = bytes.len();
             lang.pick(format!("{count} 字节"), format!("{count} bytes"))
         }
-        Value::Json(text) => text.clone(),
+        Value::Json(text) => text.replace(char::is_control, " "),
         Value::Enum { wire, named } => {
             let wire = model::Value::from(wire);
             match named {

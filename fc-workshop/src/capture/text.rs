@@ -16,7 +16,7 @@ const LARGEST: usize = 256 << 10;
 /// Passes the bytes of the connections with these ports to `receiver`.
 ///
 /// # Errors
-/// The reason why reading ended early.
+/// The reason why reading ended early. All bytes before it are passed on.
 pub fn read(
     input: impl Read,
     ports: &Ports,
@@ -29,21 +29,22 @@ pub fn read(
         packet: Vec::new(),
     };
     let mut line = Vec::new();
-    loop {
+    let read = loop {
         line.clear();
         let mut limited = (&mut input).take(LONGEST);
-        let read = limited.read_until(b'\n', &mut line);
-        if read.map_err(CaptureError::Read)? == 0 {
-            break;
+        match limited.read_until(b'\n', &mut line) {
+            Ok(0) => break Ok(()),
+            Ok(_) => packets
+                .line(&line, receiver)
+                .map_err(CaptureError::Receiver)?,
+            Err(error) => break Err(CaptureError::Read(error)),
         }
-        packets
-            .line(&line, receiver)
-            .map_err(CaptureError::Receiver)?;
-    }
+    };
     let ended = packets.end(receiver);
-    ended
+    let seen = ended
         .and_then(|()| packets.flows.finish(receiver))
-        .map_err(CaptureError::Receiver)
+        .map_err(CaptureError::Receiver)?;
+    read.map(|()| seen)
 }
 
 struct Packets<'p> {
