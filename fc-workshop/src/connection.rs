@@ -8,14 +8,18 @@ use fc_runtime::{AckPolicy, Busy, Due, Incoming, Session};
 use std::future::pending;
 use std::io;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use thiserror::Error;
 use tokio::io::{
     AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _, ReadHalf, WriteHalf,
 };
+use tokio::time::timeout;
 
 /// While more bytes than these wait to be written, the connection reads nothing.
 const MOST_UNWRITTEN: usize = 1 << 20;
+
+/// The time in which a peer must take some of the last bytes.
+const LAST_WRITE: Duration = Duration::from_secs(5);
 
 /// An event of a connection.
 #[derive(Debug)]
@@ -118,11 +122,14 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
 
     /// Appends bytes to those that are to be written.
     pub fn send(&mut self, bytes: &[u8]) {
-        if self.written == self.out.len() {
-            self.out.clear();
-            self.written = 0;
-        }
+        self.out.drain(..self.written);
+        self.written = 0;
         self.out.extend_from_slice(bytes);
+    }
+
+    /// Returns `true` while the peer must take bytes before more are sent.
+    pub(crate) fn is_full(&self) -> bool {
+        self.out.len() - self.written >= MOST_UNWRITTEN
     }
 
     /// Remembers a report as delivered, and acknowledges it with success.
@@ -152,9 +159,10 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
                 return event;
             }
             let due = self.session.next_due();
+            let is_full = self.is_full();
             let unwritten = self.out.get(self.written..).unwrap_or_default();
             let result = tokio::select! {
-                read = self.reader.read_buf(self.received.room()), if unwritten.len() < MOST_UNWRITTEN => {
+                read = self.reader.read_buf(self.received.room()), if !is_full => {
                     match read {
                         Ok(0) => return Event::Ended(End::Closed),
                         other => other.map(|_| ()),
@@ -174,12 +182,15 @@ impl<'m, S: AsyncRead + AsyncWrite, T> Connection<'m, S, T> {
     /// Writes everything and closes the sending side.
     ///
     /// # Errors
-    /// The error of the byte stream.
+    /// The error of the byte stream, or `TimedOut` if the peer takes nothing for five seconds.
     pub async fn finish(&mut self) -> io::Result<()> {
-        let unwritten = self.out.get(self.written..).unwrap_or_default();
-        self.writer.write_all(unwritten).await?;
-        self.written = self.out.len();
-        self.writer.shutdown().await
+        while let Some(unwritten) = self.out.get(self.written..).filter(|it| !it.is_empty()) {
+            match timeout(LAST_WRITE, self.writer.write(unwritten)).await?? {
+                0 => return Err(io::ErrorKind::WriteZero.into()),
+                count => self.written += count,
+            }
+        }
+        timeout(LAST_WRITE, self.writer.shutdown()).await?
     }
 
     /// Returns an event that needs no further bytes.

@@ -4,7 +4,7 @@ use super::Trial;
 use super::line::{Evidence, Next, Step, Stop, deviates, example, gzip, shown};
 use crate::answer;
 use crate::facts;
-use crate::listen::Listeners;
+use crate::listen::{Listeners, accept};
 use crate::stream::FrameStream;
 use fc_reflect::{Direction, Frame, FrameId, Packing, Reflector};
 use fc_spec::model::{
@@ -27,10 +27,8 @@ pub async fn app(
 ) -> Option<Vec<Trial>> {
     let mut trials = Vec::new();
     let run = async {
-        let accepted = timeout(wait, listeners.commands.accept()).await;
-        let (stream, _) = accepted.ok()?.ok()?;
-        // Without it, small frames only travel later.
-        let _ = stream.set_nodelay(true);
+        let accepted = timeout(wait, accept(&listeners.commands)).await;
+        let stream = accepted.ok()?;
         let mut app = App {
             reflector,
             listener: &listeners.commands,
@@ -229,14 +227,12 @@ impl<'m> App<'_, 'm> {
 
     async fn reconnects(&mut self, report: &Operation) -> Step {
         let _ = self.stream.shutdown().await;
-        let accepted = timeout(self.wait, self.listener.accept()).await;
-        let Ok(Ok((stream, _))) = accepted else {
+        let Ok(stream) = timeout(self.wait, accept(self.listener)).await else {
             return Err(Stop::Skip(text!(
                 "app 没有重新连接",
                 "the app has not connected again"
             )));
         };
-        let _ = stream.set_nodelay(true);
         self.stream = stream;
         self.frames = FrameStream::default();
         self.acknowledges(report).await
@@ -272,9 +268,10 @@ impl<'m> App<'_, 'm> {
         message.is_ok_and(|message| answer::Outcome::of(self.model(), &message).is_success())
     }
 
+    /// Sends bytes. The app may have closed the connection already, or read nothing.
     async fn send(&mut self, bytes: &[u8]) {
         self.evidence.sent(bytes);
-        let _ = self.stream.write_all(bytes).await;
+        let _ = timeout(self.patience(), self.stream.write_all(bytes)).await;
     }
 
     /// Returns the next frame that is not a command. Commands are answered with their example.
@@ -284,6 +281,8 @@ impl<'m> App<'_, 'm> {
             let piece = match self.frames.next(self.reflector) {
                 Ok(piece) => piece,
                 Err(error) => {
+                    let rest = self.frames.rest().to_vec();
+                    self.evidence.received(rest);
                     return deviates(text!(
                         "收到的字节不是帧：{error}",
                         "the received bytes are no frame: {error}"

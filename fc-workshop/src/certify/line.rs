@@ -127,10 +127,11 @@ impl<'r, 'm> Line<'r, 'm> {
         self.is_tolerant = true;
     }
 
-    /// Sends bytes. The device may have closed the connection already.
+    /// Sends bytes. The device may have closed the connection already, or read nothing.
     pub(super) async fn send(&mut self, bytes: &[u8]) {
         self.evidence.sent(bytes);
-        let _ = self.stream.write_all(bytes).await;
+        let wait = facts::call_timeout(self.reflector.model());
+        let _ = timeout(wait, self.stream.write_all(bytes)).await;
     }
 
     /// Closes the sending side.

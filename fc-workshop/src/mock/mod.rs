@@ -239,7 +239,7 @@ impl<'m> Stage<'m> {
         loop {
             tokio::select! {
                 event = connection.next() => if let Event::Ended(_) = event { break },
-                Some(frame) = frames.recv() => connection.send(&frame),
+                Some(frame) = frames.recv(), if !connection.is_full() => connection.send(&frame),
             }
         }
         // The app may have closed only its sending side.

@@ -367,9 +367,14 @@ enum AppBreak {
     IsSilent,
     /// Its request has a value of another type.
     SendsOtherType,
+    /// It sends bytes that are no frame, and reads nothing.
+    SendsGarbage,
     /// It does not connect again.
     LeavesForGood,
 }
+
+/// Bytes that are no frame.
+const GARBAGE: &[u8] = b"GET / HTTP/1.1\r\nHost: robot.example\r\nConnection: close\r\n\r\n";
 
 /// Runs the trials of an app, which calls once and receives reports.
 fn certify_app(model: &Model, way: AppBreak) -> Vec<Trial> {
@@ -378,7 +383,9 @@ fn certify_app(model: &Model, way: AppBreak) -> Vec<Trial> {
         let listeners = Listeners::bind("127.0.0.1", 0, 0).await.unwrap();
         let address = listeners.addresses().unwrap().0.to_string();
         let wait = match way {
-            AppBreak::LeavesForGood | AppBreak::IsSilent => Duration::from_millis(500),
+            AppBreak::LeavesForGood | AppBreak::IsSilent | AppBreak::SendsGarbage => {
+                Duration::from_millis(500)
+            }
             _ => Duration::from_secs(60),
         };
         let mut told = |_: &Trial| {};
@@ -397,6 +404,11 @@ async fn app(reflector: &Reflector<'_>, address: &str, way: AppBreak) {
             let _stream = TcpStream::connect(address).await.unwrap();
             pending::<()>().await;
         }
+        if way == AppBreak::SendsGarbage {
+            let mut stream = TcpStream::connect(address).await.unwrap();
+            stream.write_all(GARBAGE).await.unwrap();
+            pending::<()>().await;
+        }
         let mut client = Client::connect(reflector, address, wait).await.unwrap();
         let command = reflector.model().operation("set_light").unwrap();
         let id = reflector.id(command, Direction::Request, 0).unwrap();
@@ -410,6 +422,15 @@ async fn app(reflector: &Reflector<'_>, address: &str, way: AppBreak) {
             pending::<()>().await;
         }
     }
+}
+
+#[test]
+fn garbage_of_an_app_is_evidence() {
+    let trials = certify_app(&model(), AppBreak::SendsGarbage);
+    let Outcome::Failed(failure) = &trials[0].outcome else {
+        panic!("{trials:?}");
+    };
+    assert_eq!(failure.received, [GARBAGE]);
 }
 
 #[test]

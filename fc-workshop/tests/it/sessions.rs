@@ -335,3 +335,21 @@ fn a_connection_holds_the_session_scripts() {
     assert!(held >= 60, "{held} held");
     assert!(unused.is_empty(), "no script has {unused:?}");
 }
+
+#[test]
+fn the_end_does_not_wait_for_a_peer_that_reads_nothing() {
+    let model = small();
+    let reflector = Reflector::new(&model);
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .start_paused(true)
+        .build()
+        .unwrap();
+    runtime.block_on(async {
+        let (ours, _wire) = duplex(16);
+        let mut connection: Connection<'_, _, ()> = Connection::new(&reflector, ours, 1);
+        connection.send(&[0; 64]);
+        let error = connection.finish().await.unwrap_err();
+        assert_eq!(error.kind(), std::io::ErrorKind::TimedOut);
+    });
+}
