@@ -78,10 +78,7 @@ pub struct Options {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let reflector = &Reflector::new(model);
     let start = SystemTime::now();
     let tested = match &options.robot {

@@ -39,10 +39,7 @@ enum Shown {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let map = CodeMap::new(model);
     let lang = lang();
     print::result(&match options.format {

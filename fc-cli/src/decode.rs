@@ -71,10 +71,7 @@ enum Only {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let filter = Filter::new(model, options)?;
     let reflector = Reflector::new(model);
     let mut printer = Printer {

@@ -33,10 +33,7 @@ pub struct Options {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let reflector = Reflector::new(model);
     let mut found = Drift::new(model);
     options.recording.read(&reflector, &mut |record| {

@@ -81,10 +81,7 @@ impl From<Side> for Direction {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let reflector = Reflector::new(model);
     let name = &options.name;
     let Some(operation) = model.operation(name) else {

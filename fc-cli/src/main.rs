@@ -58,7 +58,7 @@ use clap::Parser;
 use clap_complete::CompleteEnv;
 
 use args::{Args, Command};
-use outcome::{Failure, Status};
+use outcome::{Failure, Status, Told};
 
 fn main() -> ExitCode {
     lang::speak(std::env::args_os().skip(1));
@@ -73,6 +73,9 @@ fn main() -> ExitCode {
         if print::is_closed_pipe(failure.as_ref()) {
             // The reader of the output has closed it, so a message would have no reader.
             return Status::Fine;
+        }
+        if let Some(Told(status)) = failure.downcast_ref() {
+            return *status;
         }
         print::failure(failure.as_ref());
         Status::Failed

@@ -69,10 +69,7 @@ pub fn code(text: &str) -> Result<u16, String> {
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let spec = Spec::in_project(&project);
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let new = scaffold(
         model,
         &spec.sources,

@@ -23,6 +23,18 @@ pub enum Status {
 /// The reason why a command failed: a sentence for the user.
 pub type Failure = Box<dyn std::error::Error>;
 
+/// The failure of a command that has already shown the reason.
+#[derive(Debug)]
+pub struct Told(pub Status);
+
+impl std::fmt::Display for Told {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "exit status {}", self.0 as u8)
+    }
+}
+
+impl std::error::Error for Told {}
+
 /// Makes an error in reading a path the reason of a failure.
 pub fn unreadable(path: &Path) -> impl Fn(io::Error) -> Failure {
     let path = path.display();

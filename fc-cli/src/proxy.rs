@@ -78,10 +78,7 @@ pub struct Options {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let ports = &model.transport.ports;
     let faults = options.faults.iter();
     let faults: Result<Vec<_>, _> = faults.map(|text| Fault::read(model, text)).collect();

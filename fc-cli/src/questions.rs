@@ -87,10 +87,7 @@ enum Shown {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     if let Some(id) = &options.group
         && model.group(id).is_none()
     {

@@ -42,10 +42,7 @@ pub fn recorder<'m>(model: &'m Model, path: &Path) -> Result<Recorder<'m, File>,
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let mut recorder = recorder(model, &options.out)?;
     let mut frames = 0_usize;
     let reflector = Reflector::new(model);

@@ -58,10 +58,7 @@ const CHANGELOGS: [(Lang, &str); 2] = [(Lang::Zh, "CHANGELOG.md"), (Lang::En, "C
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let spec = Spec::in_project(&project);
-    let Some(before) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let before = spec.valid()?;
     let number = &options.number;
     let shelf = Shelf::of(&project)?;
     let today = today(options.today.as_deref());

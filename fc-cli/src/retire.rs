@@ -34,10 +34,7 @@ pub struct Options {
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let spec = Spec::in_project(&project);
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     for (lang, option, reason) in [
         (Lang::Zh, "--zh", &options.zh),
         (Lang::En, "--en", &options.en),

@@ -135,10 +135,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let mut spec = Spec::in_project(&project);
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let before = spec.sources.clone();
     let said = options.said(model)?;
     let mut diffs = String::new();

@@ -7,7 +7,7 @@ use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
 
 use crate::lang::{both, lang, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, Told};
 use crate::place::Place;
 use crate::print;
 use crate::progress;
@@ -92,6 +92,15 @@ impl Spec {
     /// Shows the diagnostics as text, with a hint for more information.
     pub fn show_faults(&self) -> Result<(), Failure> {
         Ok(print::faults(&self.faults, &self.sources)?)
+    }
+
+    /// Returns the model, or shows the diagnostics of a spec with errors.
+    pub fn valid(&self) -> Result<&Model, Failure> {
+        if let Some(model) = &self.model {
+            return Ok(model);
+        }
+        self.show_faults()?;
+        Err(Told(self.status()).into())
     }
 
     /// Returns the exit status for the diagnostics.

@@ -136,10 +136,7 @@ struct Request<'m> {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let reflector = Reflector::new(model);
     if options.interactive {
         return interactive::run(&reflector, options);

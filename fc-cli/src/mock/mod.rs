@@ -99,10 +99,7 @@ enum Side {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
-    let Some(model) = &spec.model else {
-        spec.show_faults()?;
-        return Ok(spec.status());
-    };
+    let model = spec.valid()?;
     let reflector = Reflector::new(model);
     let scenario = match (&options.scenario, &options.replay) {
         (None, Some(file)) => Some(recorded(&reflector, file)?),
