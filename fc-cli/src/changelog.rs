@@ -7,21 +7,13 @@ use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
-use crate::versions::{Shelf, today};
+use crate::versions::{Named, Shelf, today};
 
 /// Options of `fcproto changelog`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(
-        value_name = "OLD",
-        help = both("旧版本 [默认：上一次发布]", "Old version [default: the last release]")
-    )]
-    old: Option<String>,
-    #[arg(
-        value_name = "NEW",
-        help = both("新版本 [默认：本项目]", "New version [default: this project]")
-    )]
-    new: Option<String>,
+    #[command(flatten)]
+    versions: Named,
     #[arg(
         long = "for",
         value_name = "AUDIENCE",
@@ -31,17 +23,10 @@ pub struct Options {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let shelf = Shelf::find(place, options.new.is_none())?;
-    let old = match &options.old {
-        Some(old) => old.clone(),
-        None => shelf.last()?,
-    };
-    let new = options.new.clone().unwrap_or_else(|| shelf.here());
-    let (Some(old), Some(new)) = (shelf.read(&old)?, shelf.read(&new)?) else {
-        return Ok(Status::Faulty);
-    };
+    let shelf = Shelf::find(place, options.versions.new.is_none())?;
+    let [old, new] = shelf.named(&options.versions)?;
     let lang = lang();
-    let title = match &options.new {
+    let title = match &options.versions.new {
         Some(_) => new.model.protocol.version.clone(),
         None => lang.pick("未发布", "Unreleased").to_owned(),
     };

@@ -8,21 +8,13 @@ use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
 use crate::project::in_repository;
-use crate::versions::{Shelf, day, today};
+use crate::versions::{Named, Shelf, day, today};
 
 /// Options of `fcproto diff`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(
-        value_name = "OLD",
-        help = both("旧版本 [默认：上一次发布]", "Old version [default: the last release]")
-    )]
-    old: Option<String>,
-    #[arg(
-        value_name = "NEW",
-        help = both("新版本 [默认：本项目]", "New version [default: this project]")
-    )]
-    new: Option<String>,
+    #[command(flatten)]
+    versions: Named,
     #[arg(
         long,
         value_name = "FORMAT",
@@ -85,17 +77,11 @@ impl Kind {
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     // Two named versions need no project, unless git has one of them.
-    let named: Vec<_> = [&options.old, &options.new].into_iter().flatten().collect();
-    let needs_project = named.len() < 2 || named.iter().any(|it| it.starts_with("git:"));
-    let shelf = Shelf::find(place, needs_project)?;
-    let old = match &options.old {
-        Some(old) => old.clone(),
-        None => shelf.last()?,
-    };
-    let new = options.new.clone().unwrap_or_else(|| shelf.here());
-    let (Some(old), Some(mut new)) = (shelf.read(&old)?, shelf.read(&new)?) else {
-        return Ok(Status::Faulty);
-    };
+    let Named { old, new } = &options.versions;
+    let is_in_project =
+        |name: &Option<String>| name.as_ref().is_none_or(|it| it.starts_with("git:"));
+    let shelf = Shelf::find(place, is_in_project(old) || is_in_project(new))?;
+    let [old, mut new] = shelf.named(&options.versions)?;
     let format = match options.format {
         Shown::Text => fc_diff::Format::Text,
         Shown::Json => fc_diff::Format::Json,

@@ -63,11 +63,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let shelf = Shelf::of(&project)?;
     let today = today(options.today.as_deref());
     let change = Change::to(number, &spec)?;
-    let findings = match changes(&shelf, &project, &change.agreed, &today)? {
-        Since::Faulty => return Ok(Status::Faulty),
-        Since::Nothing => None,
-        Since::Release(findings) => Some(findings),
-    };
+    let findings = changes(&shelf, &change.agreed, &today)?;
     let mut objections = match (shelf.releases.last(), &findings) {
         (Some((last, _)), Some(findings)) => objections(last, number, findings),
         _ => Vec::new(),
@@ -185,26 +181,14 @@ impl Change {
     }
 }
 
-/// The changes since the last release.
-enum Since {
-    /// The findings of the comparison.
-    Release(Vec<Finding>),
-    /// There is no earlier release.
-    Nothing,
-    /// The comparison is impossible, and the errors have been shown.
-    Faulty,
-}
-
-fn changes(shelf: &Shelf, project: &Project, model: &Model, today: &str) -> Result<Since, Failure> {
+/// Returns the changes since the last release, or `None` if there is none.
+fn changes(shelf: &Shelf, model: &Model, today: &str) -> Result<Option<Vec<Finding>>, Failure> {
     let Some((last, _)) = shelf.releases.last() else {
-        return Ok(Since::Nothing);
+        return Ok(None);
     };
-    let here = project.root.display().to_string();
-    let (Some(old), Some(mut new)) = (shelf.read(&last.to_string())?, shelf.read(&here)?) else {
-        return Ok(Since::Faulty);
-    };
+    let [old, mut new] = shelf.both(&last.to_string(), &shelf.here())?;
     new.model = model.clone();
-    Ok(Since::Release(shelf.compare(&old, &new, today)?))
+    shelf.compare(&old, &new, today).map(Some)
 }
 
 /// Prints the reasons why there is no release.

@@ -7,11 +7,26 @@ use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gon
 use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{both, lang, said};
-use crate::outcome::{Failure, unreadable};
+use crate::outcome::{Failure, Status, Told, unreadable};
 use crate::place::Place;
 use crate::print;
 use crate::progress;
 use crate::project::Project;
+
+/// The versions to compare.
+#[derive(Debug, clap::Args)]
+pub struct Named {
+    #[arg(
+        value_name = "OLD",
+        help = both("旧版本 [默认：上一次发布]", "Old version [default: the last release]")
+    )]
+    pub old: Option<String>,
+    #[arg(
+        value_name = "NEW",
+        help = both("新版本 [默认：本项目]", "New version [default: this project]")
+    )]
+    pub new: Option<String>,
+}
 
 /// The places to look for versions.
 pub struct Shelf {
@@ -53,8 +68,26 @@ impl Shelf {
         })
     }
 
+    /// Reads the versions of a command line. Shows the errors of both specs if one has any.
+    pub fn named(&self, versions: &Named) -> Result<[Version; 2], Failure> {
+        let old = match &versions.old {
+            Some(old) => old.clone(),
+            None => self.last()?,
+        };
+        let new = versions.new.clone();
+        self.both(&old, &new.unwrap_or_else(|| self.here()))
+    }
+
+    /// Reads two versions. Shows the errors of both specs if one has any.
+    pub fn both(&self, old: &str, new: &str) -> Result<[Version; 2], Failure> {
+        match (self.read(old)?, self.read(new)?) {
+            (Some(old), Some(new)) => Ok([old, new]),
+            _ => Err(Told(Status::Faulty).into()),
+        }
+    }
+
     /// Returns the name of the last release.
-    pub fn last(&self) -> Result<String, Failure> {
+    fn last(&self) -> Result<String, Failure> {
         match self.releases.last() {
             Some((number, _)) => Ok(number.to_string()),
             None => Err(
@@ -79,7 +112,7 @@ impl Shelf {
     }
 
     /// Reads a version. Shows the errors of its spec and returns `None` if it has any.
-    pub fn read(&self, name: &str) -> Result<Option<Version>, Failure> {
+    fn read(&self, name: &str) -> Result<Option<Version>, Failure> {
         progress::doing(both(
             "正在读取规范的两个版本",
             "reading two versions of the spec",
