@@ -121,11 +121,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             "{passed} passed, {failed} failed, {skipped} skipped\n"
         ))?;
     }
-    Ok(if certificate.is_passed() {
-        Status::Fine
-    } else {
-        Status::Faulty
-    })
+    Ok(Status::fine_if(certificate.is_passed()))
 }
 
 /// The address of a device, and its trials.

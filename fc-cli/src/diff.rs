@@ -100,9 +100,5 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let kinds = || options.fail_on.iter().any(|kind| kind.is_of(finding));
         finding.is_fault() || (counts() && kinds())
     };
-    Ok(if findings.iter().any(fails) {
-        Status::Faulty
-    } else {
-        Status::Fine
-    })
+    Ok(Status::fine_if(!findings.iter().any(fails)))
 }

@@ -47,11 +47,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if options.format == Shown::Text {
         print::done(&summary(&report))?;
     }
-    Ok(if report.deviations.is_empty() {
-        Status::Fine
-    } else {
-        Status::Faulty
-    })
+    Ok(Status::fine_if(report.deviations.is_empty()))
 }
 
 fn show(spec: &Spec, options: &Options, deviation: &Deviation<'_>) -> io::Result<()> {

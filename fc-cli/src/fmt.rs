@@ -5,12 +5,12 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use fc_codegen::output::{replace_spec_file, unified};
-use fc_spec::diagnostic::{FaultCode, Faults, Format, render, summary};
+use fc_spec::diagnostic::Faults;
 use fc_spec::format::{Refused, format};
 use fc_spec::source::{FileId, SourceFile};
 use fc_spec::syntax::{limits, read_bytes, read_dir, read_files};
 
-use crate::lang::{both, counted, lang, said};
+use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
@@ -96,10 +96,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         print::done(&run.shown)?;
     }
     faults.sort();
-    let summary = summary(&faults, lang()).map(|line| print::leveled(&line) + "\n");
-    let reported =
-        render(&faults, &sources, Format::Colored, lang()) + &summary.unwrap_or_default();
-    print::message(&(reported + &run.mistakes))?;
+    print::faults(&faults, &sources)?;
+    print::message(&run.mistakes)?;
     let stale = options.check && run.changed > 0;
     if stale {
         let files = counted(run.changed, "文件", "file");
@@ -108,14 +106,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             "{files} not formatted: run `fcproto fmt`\n"
         ))?;
     }
-    let mut codes = faults.iter().map(|fault| fault.code);
-    let is_unreadable = codes.any(|code| code == FaultCode::Unreadable);
-    Ok(if is_unreadable || !run.mistakes.is_empty() {
-        Status::Failed
-    } else if faults.has_errors() || stale {
-        Status::Faulty
-    } else {
-        Status::Fine
+    Ok(match Status::of(&faults) {
+        _ if !run.mistakes.is_empty() => Status::Failed,
+        Status::Fine => Status::fine_if(!stale),
+        status => status,
     })
 }
 

@@ -71,11 +71,6 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             "{linted} {files}: nothing found{waived}\n"
         ))?;
     }
-    Ok(
-        if shown.has_errors() || (options.deny.is_some() && !shown.is_empty()) {
-            Status::Faulty
-        } else {
-            Status::Fine
-        },
-    )
+    let is_denied = options.deny.is_some() && !shown.is_empty();
+    Ok(Status::fine_if(!shown.has_errors() && !is_denied))
 }

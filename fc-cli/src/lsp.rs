@@ -27,11 +27,7 @@ pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
     // The writing thread ends when the connection is dropped.
     drop(connection);
     threads.join()?;
-    Ok(if was_asked_to_end {
-        Status::Fine
-    } else {
-        Status::Faulty
-    })
+    Ok(Status::fine_if(was_asked_to_end))
 }
 
 /// The host of the server, with the project options of the command line.

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::Path;
 
+use fc_spec::diagnostic::{FaultCode, Faults};
+
 use crate::lang::said;
 
 /// The outcome of a command. Its number is the exit status.
@@ -18,6 +20,22 @@ pub enum Status {
     Refused = 3,
     /// A robot has not answered.
     Unanswered = 4,
+}
+
+impl Status {
+    /// Returns the status for diagnostics.
+    pub fn of(faults: &Faults) -> Self {
+        if faults.iter().any(|it| it.code == FaultCode::Unreadable) {
+            Self::Failed
+        } else {
+            Self::fine_if(!faults.has_errors())
+        }
+    }
+
+    /// Returns success, or [`Self::Faulty`] if `is_fine` is `false`.
+    pub fn fine_if(is_fine: bool) -> Self {
+        if is_fine { Self::Fine } else { Self::Faulty }
+    }
 }
 
 /// The reason why a command failed: a sentence for the user.

@@ -1,7 +1,7 @@
 //! Reads the spec and shows its diagnostics.
 
 use fc_codegen::check::{Requirements, check};
-use fc_spec::diagnostic::{FaultCode, Faults, Severity};
+use fc_spec::diagnostic::{Faults, Severity};
 use fc_spec::model::{Languages, Model};
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
@@ -105,17 +105,7 @@ impl Spec {
 
     /// Returns the exit status for the diagnostics.
     pub fn status(&self) -> Status {
-        if self
-            .faults
-            .iter()
-            .any(|fault| fault.code == FaultCode::Unreadable)
-        {
-            Status::Failed
-        } else if self.faults.has_errors() {
-            Status::Faulty
-        } else {
-            Status::Fine
-        }
+        Status::of(&self.faults)
     }
 
     /// Returns the number of files.

@@ -101,10 +101,6 @@ impl Options {
             .args([&self.ours, &self.base, &self.theirs])
             .output()
             .map_err(|error| said!("无法运行 git：{error}", "cannot run git: {error}"))?;
-        Ok(if output.status.success() {
-            Status::Fine
-        } else {
-            Status::Faulty
-        })
+        Ok(Status::fine_if(output.status.success()))
     }
 }
