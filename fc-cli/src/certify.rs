@@ -15,6 +15,7 @@ use crate::allow::Allowed;
 use crate::endpoint::{self, Ports, with_port};
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::recording::Shown;
@@ -67,13 +68,8 @@ pub struct Options {
         help = both("只做这些试验，例如 `frame` 或 `call.get_robot_sn`", "Run these trials only, such as `frame` or `call.get_robot_sn`")
     )]
     only: Vec<String>,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
@@ -115,7 +111,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         std::fs::write(folder.join("certificate.json"), certify::json(&certificate))?;
     }
     let [passed, failed, skipped] = certificate.counts();
-    if options.format == Shown::Text {
+    if options.output.format == Shown::Text {
         print::done(&said!(
             "{passed} 项通过，{failed} 项失败，{skipped} 项跳过\n",
             "{passed} passed, {failed} failed, {skipped} skipped\n"
@@ -142,7 +138,7 @@ fn test_robot(
         let mut interrupt = Interrupt::new()?;
         let wait = facts::call_timeout(model);
         drop(Client::connect(reflector, &settings.address, wait).await?);
-        let mut told = |trial: &Trial| show(options.format, trial);
+        let mut told = |trial: &Trial| show(options.output.format, trial);
         Ok(certify::robot(reflector, &settings, &mut told, interrupt.next()).await)
     })?;
     Ok(trials?.map(|trials| (settings.address, trials)))
@@ -157,7 +153,7 @@ fn test_app(reflector: &Reflector<'_>, options: &Options) -> Result<Option<Teste
         let mut interrupt = Interrupt::new()?;
         print::result(&endpoint::line(addresses))?;
         let wait = Duration::from_secs(options.wait);
-        let mut told = |trial: &Trial| show(options.format, trial);
+        let mut told = |trial: &Trial| show(options.output.format, trial);
         let end = interrupt.next();
         let trials = certify::app(reflector, listeners, wait, &mut told, end).await;
         if trials.is_none() {

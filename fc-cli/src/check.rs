@@ -10,6 +10,7 @@ use fc_spec::source::Sources;
 
 use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::project::{Project, in_repository};
@@ -18,13 +19,8 @@ use crate::spec::Spec;
 /// Options of `fcproto check`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
     #[arg(
         long,
         value_name = "WHAT",
@@ -73,8 +69,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     if let Some(model) = &spec.model {
         project.targets.check_audiences(model)?;
     }
-    options.format.show(&project, &spec.faults, &spec.sources)?;
-    if let (Shown::Text, Some(model)) = (options.format, &spec.model) {
+    options
+        .output
+        .format
+        .show(&project, &spec.faults, &spec.sources)?;
+    if let (Shown::Text, Some(model)) = (options.output.format, &spec.model) {
         let files = counted(spec.files(), "文件", "file");
         let operations = counted(model.operations.len(), "接口", "operation");
         let types = counted(model.types.len(), "类型", "type");
@@ -92,7 +91,7 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
     let Some(fixed) = fix_all(&spec.sources, |sources| {
         spec.instead(sources.clone()).faults
     }) else {
-        if options.format == Shown::Text {
+        if options.output.format == Shown::Text {
             print::done(&said!(
                 "没有能自动修改的错误\n",
                 "no error has a certain fix\n"
@@ -129,7 +128,7 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
         print::result(&changed)?;
         return Ok(spec);
     }
-    if options.format == Shown::Text {
+    if options.output.format == Shown::Text {
         print::done(&told)?;
     }
     Ok(Spec::in_project(project))
@@ -167,7 +166,9 @@ impl Options {
     /// Returns the options of a run that counts warnings as errors.
     pub fn strict() -> Self {
         Self {
-            format: Shown::Text,
+            output: Output {
+                format: Shown::Text,
+            },
             deny: Some(Denied::Warnings),
             fix: false,
             dry_run: false,

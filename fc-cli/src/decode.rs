@@ -12,6 +12,7 @@ use crate::complete;
 use crate::lang::{both, lang, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::recording::{Recording, Shown};
 use crate::spec::Spec;
@@ -53,13 +54,8 @@ pub struct Options {
         help = both("只显示一部分", "Show a part only")
     )]
     only: Option<Only>,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
 }
 
 /// The part to show.
@@ -170,7 +166,7 @@ impl Printer<'_, '_> {
         if record.error.is_some() {
             self.status = Status::Faulty;
         }
-        let mut text = if self.options.format == Shown::Json {
+        let mut text = if self.options.output.format == Shown::Json {
             decode::json(record)
         } else {
             decode::text(record, self.model, lang())
@@ -178,7 +174,8 @@ impl Printer<'_, '_> {
         text.truncate(text.trim_end().len());
         text.push('\n');
         // A blank line separates the trees.
-        if self.options.format == Shown::Text && std::mem::replace(&mut self.has_shown, true) {
+        if self.options.output.format == Shown::Text && std::mem::replace(&mut self.has_shown, true)
+        {
             self.out.write_all(b"\n")?;
         }
         self.out.write_all(text.as_bytes())?;

@@ -5,6 +5,7 @@ use fc_diff::{Finding, render};
 
 use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::project::in_repository;
@@ -15,13 +16,8 @@ use crate::versions::{Named, Shelf, day, today};
 pub struct Options {
     #[command(flatten)]
     versions: Named,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
     #[arg(
         long,
         value_name = "KINDS",
@@ -82,7 +78,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         |name: &Option<String>| name.as_ref().is_none_or(|it| it.starts_with("git:"));
     let shelf = Shelf::find(place, is_in_project(old) || is_in_project(new))?;
     let [old, mut new] = shelf.named(&options.versions)?;
-    let format = match options.format {
+    let format = match options.output.format {
         Shown::Text => fc_diff::Format::Text,
         Shown::Json => fc_diff::Format::Json,
         Shown::Markdown => fc_diff::Format::Markdown,
@@ -90,7 +86,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Shown::Sarif => fc_diff::Format::Sarif,
     };
     let findings = shelf.compare(&old, &new, &today(options.today.as_deref()))?;
-    if matches!(options.format, Shown::Github | Shown::Sarif) {
+    if matches!(options.output.format, Shown::Github | Shown::Sarif) {
         new.sources = new.sources.below(&in_repository(&shelf.root));
     }
     let lang = lang();

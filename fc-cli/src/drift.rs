@@ -7,6 +7,7 @@ use fc_workshop::drift::{self, Deviation, Drift, Report};
 
 use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::recording::{Recording, Shown};
@@ -17,13 +18,8 @@ use crate::spec::Spec;
 pub struct Options {
     #[command(flatten)]
     recording: Recording,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
     #[arg(
         long,
         help = both("显示能消除偏差的 YAML 修改", "Show the edits of the YAML that would settle deviations")
@@ -44,14 +40,14 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     for deviation in &report.deviations {
         show(&spec, options, deviation)?;
     }
-    if options.format == Shown::Text {
+    if options.output.format == Shown::Text {
         print::done(&summary(&report))?;
     }
     Ok(Status::fine_if(report.deviations.is_empty()))
 }
 
 fn show(spec: &Spec, options: &Options, deviation: &Deviation<'_>) -> io::Result<()> {
-    if options.format == Shown::Json {
+    if options.output.format == Shown::Json {
         return print::result(&(drift::json(deviation) + "\n"));
     }
     let mut text = drift::text(deviation, lang()) + "\n";

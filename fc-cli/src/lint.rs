@@ -8,6 +8,7 @@ use fc_spec::lint::{faults, lint, settings, waive};
 use crate::check::{Denied, Shown};
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::project::Project;
@@ -17,13 +18,8 @@ use crate::versions::{day, today};
 /// Options of `fcproto lint`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
     #[arg(
         long,
         value_name = "WHAT",
@@ -45,20 +41,26 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let (settings, files) = settings(&project.root, FILE, &mut wrong);
     if !wrong.is_empty() {
         wrong.sort();
-        options.format.show(&project, &wrong, &files)?;
+        options.output.format.show(&project, &wrong, &files)?;
         return Ok(Status::Failed);
     }
     let spec = Spec::in_project(&project);
     let Some(model) = &spec.model else {
-        options.format.show(&project, &spec.faults, &spec.sources)?;
+        options
+            .output
+            .format
+            .show(&project, &spec.faults, &spec.sources)?;
         return Ok(spec.status());
     };
     let today = today(options.today.as_deref());
     let mut findings = lint(model, &settings, &today);
     waive(&mut findings, &model.waivers, &today);
     let shown = faults(&findings, &settings, || definitions(&spec.sources));
-    options.format.show(&project, &shown, &spec.sources)?;
-    if options.format == Shown::Text && shown.is_empty() {
+    options
+        .output
+        .format
+        .show(&project, &shown, &spec.sources)?;
+    if options.output.format == Shown::Text && shown.is_empty() {
         let waived = findings.iter().filter(|it| it.waived.is_some()).count();
         let waived = match waived {
             0 => String::new(),

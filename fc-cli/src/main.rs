@@ -29,6 +29,7 @@ mod lsp;
 mod mock;
 mod new;
 mod outcome;
+mod output;
 mod package;
 mod place;
 mod places;

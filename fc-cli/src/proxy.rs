@@ -18,6 +18,7 @@ use serde_json::json;
 use crate::endpoint::{self, Ports, at_port, with_port};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::recording::Shown;
@@ -67,13 +68,8 @@ pub struct Options {
         help = both("在终端中查看、过滤、暂停和展开", "Show, filter, pause and open frames on the terminal")
     )]
     view: bool,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
@@ -103,7 +99,7 @@ async fn forward(model: &Model, options: &Options, settings: &Settings) -> Resul
     let mut interrupt = Interrupt::new()?;
     print::result(&endpoint::line(addresses))?;
     if !settings.faults.is_empty() && options.seed.is_none() {
-        print::result(&seed(settings.seed, options.format))?;
+        print::result(&seed(settings.seed, options.output.format))?;
     }
     #[cfg(feature = "view")]
     if options.view {
@@ -116,7 +112,7 @@ async fn forward(model: &Model, options: &Options, settings: &Settings) -> Resul
         left?;
         return Ok(Status::Fine);
     }
-    let sink = &mut |event: Event<'_, '_>| show(model, options.format, &event);
+    let sink = &mut |event: Event<'_, '_>| show(model, options.output.format, &event);
     relay(model, options, settings, listeners, sink, interrupt.next()).await?;
     Ok(Status::Fine)
 }

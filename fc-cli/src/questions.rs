@@ -6,6 +6,7 @@ use fc_spec::model::{AnswerKind, Question, Text};
 
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::spec::Spec;
@@ -44,13 +45,8 @@ pub struct Options {
         help = both("也列出规范已定、待负责人确认的内容", "Include decisions for the owner to confirm")
     )]
     decisions: bool,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -115,7 +111,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         )
         .into());
     }
-    print::result(&match options.format {
+    print::result(&match options.output.format {
         Shown::Text if list.is_empty() => said!("没有问题\n", "no questions\n"),
         Shown::Text if options.ids.is_empty() => list.text(),
         Shown::Text => list.text() + &print::diff(&list.edits()),

@@ -163,7 +163,7 @@ impl<'r, 'm> Talk<'r, 'm> {
         };
         let line = Options::from_arg_matches(&matches)?;
         if line.list {
-            let is_json = self.options.format == super::Shown::Json;
+            let is_json = self.options.output.format == super::Shown::Json;
             print::result(&show::list(self.reflector.model(), is_json))?;
             return Ok(Status::Fine);
         }

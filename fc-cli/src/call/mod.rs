@@ -21,6 +21,7 @@ use crate::input;
 use crate::lang::{both, lang, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
+use crate::output::Output;
 use crate::place::Place;
 use crate::print;
 use crate::spec::Spec;
@@ -109,13 +110,8 @@ pub struct Options {
         help = both("逐行输入指令，用 Tab 补全", "Read calls line by line, with completion by Tab")
     )]
     interactive: bool,
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        default_value = "text",
-        help = both("输出格式", "Output format")
-    )]
-    format: Shown,
+    #[command(flatten)]
+    output: Output<Shown>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -142,7 +138,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return interactive::run(&reflector, options);
     }
     if options.list {
-        print::result(&show::list(model, options.format == Shown::Json))?;
+        print::result(&show::list(model, options.output.format == Shown::Json))?;
         return Ok(Status::Fine);
     }
     let request = request(&reflector, options, options.allow)?;
@@ -173,7 +169,7 @@ fn call<'r, 'm>(reflector: &'m Reflector<'m>, options: &'r Options) -> session::
         timeout: timeout.unwrap_or_else(|| facts::call_timeout(reflector.model())),
         follow: options.follow.map(Duration::from_secs),
         shown: show::Format {
-            json: options.format == Shown::Json,
+            json: options.output.format == Shown::Json,
             lang: lang(),
         },
     }
