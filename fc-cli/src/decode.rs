@@ -126,26 +126,18 @@ impl<'o> Filter<'o> {
         let Options {
             codes, names, ids, ..
         } = self.options;
-        let has = |is_empty: bool, found: bool| is_empty || found;
-        let id = record.id;
         let name = record.operation.map(|operation| &operation.name);
         (self.options.only.is_none() || record.error.is_some())
-            && has(
-                codes.is_empty(),
-                id.is_some_and(|id| codes.contains(&id.code)),
-            )
-            && has(ids.is_empty(), id.is_some_and(|id| ids.contains(&id.id)))
-            && has(
-                names.is_empty(),
-                name.is_some_and(|name| names.contains(name)),
-            )
-            && has(
-                self.results.is_empty(),
-                record
-                    .result()
-                    .is_some_and(|result| self.results.contains(&result)),
-            )
+            && has(codes, record.id.map(|id| id.code).as_ref())
+            && has(ids, record.id.map(|id| id.id).as_ref())
+            && has(names, name)
+            && has(&self.results, record.result().as_ref())
     }
+}
+
+/// Returns `true` if a list has a value. An empty list has every value.
+fn has<T: PartialEq>(wanted: &[T], value: Option<&T>) -> bool {
+    wanted.is_empty() || value.is_some_and(|value| wanted.contains(value))
 }
 
 /// Prints the records that a filter selects.
