@@ -57,37 +57,36 @@ fn described(error: &Error) -> Option<String> {
 }
 
 fn message(error: &Error) -> Option<String> {
-    let argument = || word(error, ContextKind::InvalidArg);
-    let value = || word(error, ContextKind::InvalidValue);
-    let command = || word(error, ContextKind::InvalidSubcommand);
+    // Clap gives each error the words of its message.
+    let [argument, value, command] = [
+        ContextKind::InvalidArg,
+        ContextKind::InvalidValue,
+        ContextKind::InvalidSubcommand,
+    ]
+    .map(|kind| word(error, kind).unwrap_or_default());
+    let list = |kind| listed(&words(error, kind));
     Some(match error.kind() {
         ErrorKind::UnknownArgument => {
-            let argument = argument()?;
             said!("没有参数 `{argument}`", "unexpected argument `{argument}`")
         }
         ErrorKind::InvalidSubcommand => {
-            let command = command()?;
             said!("没有命令 `{command}`", "there is no command `{command}`")
         }
         ErrorKind::MissingRequiredArgument => {
-            let missing = listed(&words(error, ContextKind::InvalidArg));
+            let missing = list(ContextKind::InvalidArg);
             said!("缺少参数 {missing}", "missing argument {missing}")
         }
         ErrorKind::MissingSubcommand => {
-            let command = command()?;
-            let known = listed(&words(error, ContextKind::ValidSubcommand));
+            let known = list(ContextKind::ValidSubcommand);
             said!(
                 "`{command}` 之后缺少命令；可用的命令：{known}",
                 "`{command}` needs a command: {known}"
             )
         }
         ErrorKind::InvalidValue => {
-            let (argument, value) = (argument()?, value()?);
-            let known = words(error, ContextKind::ValidValue);
-            match (value.as_str(), listed(&known)) {
-                ("", _) if known.is_empty() => {
-                    said!("`{argument}` 缺少值", "`{argument}` needs a value")
-                }
+            let known = list(ContextKind::ValidValue);
+            match (value.as_str(), known.as_str()) {
+                ("", "") => said!("`{argument}` 缺少值", "`{argument}` needs a value"),
                 ("", known) => said!(
                     "`{argument}` 缺少值；可用的值：{known}",
                     "`{argument}` needs a value: {known}"
@@ -99,7 +98,6 @@ fn message(error: &Error) -> Option<String> {
             }
         }
         ErrorKind::ValueValidation => {
-            let (argument, value) = (argument()?, value()?);
             let cause = error.source().map(ToString::to_string);
             let cause = cause.map(|cause| said!("：{cause}", ": {cause}"));
             let cause = cause.unwrap_or_default();
@@ -108,32 +106,30 @@ fn message(error: &Error) -> Option<String> {
                 "invalid value `{value}` for `{argument}`{cause}"
             )
         }
-        ErrorKind::ArgumentConflict => conflict(error)?,
-        ErrorKind::NoEquals => {
-            let argument = argument()?;
-            said!(
-                "`{argument}` 与它的值之间应为等号",
-                "`{argument}` needs an equal sign before its value"
-            )
+        ErrorKind::ArgumentConflict => {
+            let others = list(ContextKind::PriorArg);
+            if !command.is_empty() {
+                said!(
+                    "命令 `{command}` 不能与 {others} 同时使用",
+                    "the command `{command}` cannot be used with {others}"
+                )
+            } else if others.is_empty() || others == listed(std::slice::from_ref(&argument)) {
+                said!(
+                    "`{argument}` 只能出现一次",
+                    "`{argument}` can be used only once"
+                )
+            } else {
+                said!(
+                    "`{argument}` 不能与 {others} 同时使用",
+                    "`{argument}` cannot be used with {others}"
+                )
+            }
         }
-        ErrorKind::TooManyValues => {
-            let (argument, value) = (argument()?, value()?);
-            said!(
-                "`{argument}` 的值过多：`{value}`",
-                "too many values for `{argument}`: `{value}`"
-            )
-        }
-        ErrorKind::TooFewValues => {
-            let argument = argument()?;
-            let least = number(error, ContextKind::MinValues)?;
-            let actual = number(error, ContextKind::ActualNumValues)?;
-            said!(
-                "`{argument}` 至少应有 {least} 个值，实际为 {actual} 个",
-                "`{argument}` needs at least {least} values, not {actual}"
-            )
-        }
+        ErrorKind::TooManyValues => said!(
+            "`{argument}` 的值过多：`{value}`",
+            "too many values for `{argument}`: `{value}`"
+        ),
         ErrorKind::WrongNumberOfValues => {
-            let argument = argument()?;
             let expected = number(error, ContextKind::ExpectedNumValues)?;
             let actual = number(error, ContextKind::ActualNumValues)?;
             said!(
@@ -147,29 +143,6 @@ fn message(error: &Error) -> Option<String> {
         ),
         _ => return None,
     })
-}
-
-fn conflict(error: &Error) -> Option<String> {
-    let others = words(error, ContextKind::PriorArg);
-    if let Some(command) = word(error, ContextKind::InvalidSubcommand) {
-        let others = listed(&others);
-        return Some(said!(
-            "命令 `{command}` 不能与 {others} 同时使用",
-            "the command `{command}` cannot be used with {others}"
-        ));
-    }
-    let argument = word(error, ContextKind::InvalidArg)?;
-    if others.is_empty() || others == [argument.as_str()] {
-        return Some(said!(
-            "`{argument}` 只能出现一次",
-            "`{argument}` can be used only once"
-        ));
-    }
-    let others = listed(&others);
-    Some(said!(
-        "`{argument}` 不能与 {others} 同时使用",
-        "`{argument}` cannot be used with {others}"
-    ))
 }
 
 /// Returns suggestions for the user.
