@@ -1,7 +1,6 @@
 //! The terminal of `fcproto proxy --view`.
 
 use std::cell::RefCell;
-use std::future::pending;
 use std::io::{self, IsTerminal as _};
 use std::thread;
 use std::time::Duration;
@@ -9,7 +8,6 @@ use std::time::Duration;
 use fc_workshop::proxy::Event;
 use fc_workshop::run::Interrupt;
 use fc_workshop::view::{View, Wish};
-use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event as Input, KeyEvent, KeyEventKind};
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::time::{MissedTickBehavior, interval};
@@ -39,23 +37,6 @@ pub fn sink<'m>(view: &RefCell<View<'m>>) -> impl FnMut(Event<'_, 'm>) -> io::Re
 pub async fn show(view: &RefCell<View<'_>>, interrupt: &mut Interrupt) -> io::Result<()> {
     let mut terminal = ratatui::try_init()?;
     let _restored = Restored;
-    pictures(&mut terminal, view, interrupt).await
-}
-
-/// Restores the terminal when it is dropped, also if an error of the proxy ends the view.
-struct Restored;
-
-impl Drop for Restored {
-    fn drop(&mut self) {
-        ratatui::restore();
-    }
-}
-
-async fn pictures(
-    terminal: &mut DefaultTerminal,
-    view: &RefCell<View<'_>>,
-    interrupt: &mut Interrupt,
-) -> io::Result<()> {
     let mut keys = keys();
     let mut ticks = interval(PICTURE);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -64,12 +45,22 @@ async fn pictures(
         tokio::select! {
             () = interrupt.next() => return Ok(()),
             _ = ticks.tick() => {}
-            key = next(&mut keys) => {
+            // The last key is an error. After it, none comes.
+            Some(key) = keys.recv() => {
                 if view.borrow_mut().press(key?) == Wish::Leave {
                     return Ok(());
                 }
             }
         }
+    }
+}
+
+/// Restores the terminal when it is dropped, also if an error of the proxy ends the view.
+struct Restored;
+
+impl Drop for Restored {
+    fn drop(&mut self) {
+        ratatui::restore();
     }
 }
 
@@ -90,14 +81,6 @@ fn keys() -> Receiver<io::Result<KeyEvent>> {
         }
     });
     receiver
-}
-
-/// Waits for the next key. After the last one, it never comes.
-async fn next(keys: &mut Receiver<io::Result<KeyEvent>>) -> io::Result<KeyEvent> {
-    match keys.recv().await {
-        Some(key) => key,
-        None => pending().await,
-    }
 }
 
 /// Checks that standard output is a terminal.
