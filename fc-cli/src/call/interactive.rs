@@ -32,7 +32,13 @@ const ALWAYS: Duration = Duration::from_secs(u64::MAX >> 32);
 pub fn run(reflector: &Reflector<'_>, options: &Options) -> Result<Status, Failure> {
     progress::done();
     let prompt = Prompt::start(reflector.model())?;
-    block_on(Talk::new(reflector, options, prompt).run())?
+    let talk = Talk {
+        reflector,
+        options,
+        prompt,
+        client: None,
+    };
+    block_on(talk.run())?
 }
 
 /// The line editor. It blocks a separate thread.
@@ -92,16 +98,7 @@ struct Talk<'r, 'm> {
     client: Option<Client<'m>>,
 }
 
-impl<'r, 'm> Talk<'r, 'm> {
-    fn new(reflector: &'m Reflector<'m>, options: &'r Options, prompt: Prompt) -> Self {
-        Self {
-            reflector,
-            options,
-            prompt,
-            client: None,
-        }
-    }
-
+impl Talk<'_, '_> {
     async fn run(mut self) -> Result<Status, Failure> {
         let mut status = Status::Fine;
         let mut interrupt = Interrupt::new()?;

@@ -18,7 +18,7 @@ use fc_workshop::facts;
 use crate::allow::{self, Allowed};
 use crate::complete;
 use crate::input;
-use crate::lang::{both, lang, said};
+use crate::lang::{both, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
@@ -170,7 +170,6 @@ fn call<'r, 'm>(reflector: &'m Reflector<'m>, options: &'r Options) -> session::
         follow: options.follow.map(Duration::from_secs),
         shown: show::Format {
             json: options.output.format == Shown::Json,
-            lang: lang(),
         },
     }
 }
@@ -200,32 +199,32 @@ fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Req
         )
         .into());
     };
-    if operation.kind() == Kind::Stream {
-        let is_received = operation.sender == Side::Robot;
-        if is_received && (options.json.is_some() || !options.arguments.is_empty()) {
+    let request = |data| Request {
+        operation: Some(operation),
+        kind: id.kind,
+        code: id.code,
+        data,
+    };
+    let is_stream = operation.kind() == Kind::Stream;
+    if is_stream && operation.sender == Side::Robot {
+        if options.json.is_some() || !options.arguments.is_empty() {
             return Err(said!(
                 "`{name}` 由机器人发送，不接受参数",
                 "the robot sends `{name}`, so it takes no arguments"
             )
             .into());
         }
-        if !is_received && operation.body(Direction::Request).is_none() {
-            return Err(said!(
-                "`{name}` 的内容是字节，`call` 只发送 JSON",
-                "`{name}` has bytes, and `call` sends only JSON"
-            )
-            .into());
-        }
-        if is_received {
-            return Ok(Request {
-                operation: Some(operation),
-                kind: id.kind,
-                code: id.code,
-                data: Vec::new(),
-            });
-        }
+        return Ok(request(Vec::new()));
     }
-    let body = match (&options.json, operation.body(Direction::Request)) {
+    let body = operation.body(Direction::Request);
+    if is_stream && body.is_none() {
+        return Err(said!(
+            "`{name}` 的内容是字节，`call` 只发送 JSON",
+            "`{name}` has bytes, and `call` sends only JSON"
+        )
+        .into());
+    }
+    let body = match (&options.json, body) {
         (Some(text), _) => read_json(text)?,
         (None, Some(body)) => {
             let arguments = options.arguments.iter().map(String::as_str);
@@ -233,7 +232,7 @@ fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Req
         }
         (None, None) => Value::Object(Vec::new()),
     };
-    let data = if operation.kind() == Kind::Stream {
+    let data = if is_stream {
         body
     } else {
         let samples = reflector.samples();
@@ -245,12 +244,7 @@ fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Req
     let checked = reflector.message(Some(operation), Direction::Request, data.as_bytes());
     let text = checked.and_then(|message| message.canonical());
     let text = text.map_err(|error| show::breaks_the_spec(model, operation, &error))?;
-    Ok(Request {
-        operation: Some(operation),
-        kind: id.kind,
-        code: id.code,
-        data: text.into_bytes(),
-    })
+    Ok(request(text.into_bytes()))
 }
 
 /// Reads the JSON object of an option, or the file that it names.

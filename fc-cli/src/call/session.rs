@@ -31,7 +31,11 @@ pub struct Call<'r, 'm> {
 impl<'m> Call<'_, 'm> {
     /// Sends the request as often as asked. Returns the status of the last call that was no success.
     pub async fn run(&self, request: &Request<'m>) -> Result<Status, Failure> {
-        match self.each(request).await {
+        let each = async {
+            let mut client = self.connect(request).await?;
+            self.with(&mut client, request).await
+        };
+        match each.await {
             Ok(status) => Ok(status),
             Err(failure) if failure.is::<ClientError>() => {
                 print::failure(failure.as_ref());
@@ -39,11 +43,6 @@ impl<'m> Call<'_, 'm> {
             }
             Err(failure) => Err(failure),
         }
-    }
-
-    async fn each(&self, request: &Request<'m>) -> Result<Status, Failure> {
-        let mut client = self.connect(request).await?;
-        self.with(&mut client, request).await
     }
 
     /// Connects to the port of a request.

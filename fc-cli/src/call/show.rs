@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use fc_reflect::{BodyError, Direction, Frame, Message};
-use fc_spec::model::{Kind, Lang, Model, Number, Operation, Value};
+use fc_spec::model::{Kind, Model, Number, Operation, Value};
 use fc_workshop::answer::Outcome;
 use fc_workshop::arguments::json;
 use fc_workshop::paths;
 use fc_workshop::table::{aligned, table};
 
-use crate::lang::{lang, said};
+use crate::lang::{in_lang, lang, said};
 use crate::outcome::Failure;
 
 /// The format of the output.
@@ -17,8 +17,6 @@ use crate::outcome::Failure;
 pub struct Format {
     /// One line of JSON per message instead of a table.
     pub json: bool,
-    /// The language of tables.
-    pub lang: Lang,
 }
 
 impl Format {
@@ -47,27 +45,8 @@ impl Format {
             ]);
         }
         let nodes = message.body.as_deref().unwrap_or_default();
-        let summary = self.summary(&name, outcome);
-        format!("{summary}\n{}", table(nodes, self.lang))
-    }
-
-    /// Returns the name and the result of a response.
-    pub fn summary(self, name: &str, outcome: &Outcome<'_>) -> String {
-        let result = outcome.known.map_or("", |known| &known.name);
-        let code = outcome.code.map(|code| format!("  {code} {result}"));
-        // The robot sends the Chinese text of the result, sometimes with a reason behind it.
-        let known = outcome.known.and_then(|known| {
-            let reason = outcome.text.strip_prefix(&known.text.zh)?;
-            Some(format!("{}{reason}", self.lang.text(&known.text)))
-        });
-        let text = known.unwrap_or_else(|| outcome.text.clone());
-        let text = if text.is_empty() {
-            text
-        } else {
-            format!("  {text}")
-        };
-        let code = code.unwrap_or_default();
-        format!("{name}{code}{text}")
+        let summary = summary(&name, outcome);
+        format!("{summary}\n{}", table(nodes, lang()))
     }
 
     /// Shows the times of several calls. In JSON, each response has its own.
@@ -95,18 +74,17 @@ impl Format {
         let is_bytes = operation.body(Direction::Request).is_none();
         let count = frame.data.len();
         if self.json {
-            let mut keys = vec![
+            return line(vec![
                 ("name", Value::String(operation.name.clone())),
                 ("kind", Value::String(operation.kind().name().to_owned())),
-            ];
-            keys.push(if is_bytes {
-                ("bytes", int(i128::try_from(count).unwrap_or(0)))
-            } else {
-                ("body", body(frame))
-            });
-            return line(keys);
+                if is_bytes {
+                    ("bytes", int(i128::try_from(count).unwrap_or(0)))
+                } else {
+                    ("body", body(frame))
+                },
+            ]);
         }
-        let title = self.lang.text(&operation.title);
+        let title = lang().text(&operation.title);
         let name = &operation.name;
         if is_bytes {
             return said!(
@@ -115,9 +93,28 @@ impl Format {
             );
         }
         let nodes = message.and_then(|message| message.body.as_deref().ok());
-        let rows = table(nodes.unwrap_or_default(), self.lang);
+        let rows = table(nodes.unwrap_or_default(), lang());
         format!("{name}  {title}\n{rows}")
     }
+}
+
+/// Returns the name and the result of a response.
+pub fn summary(name: &str, outcome: &Outcome<'_>) -> String {
+    let result = outcome.known.map_or("", |known| &known.name);
+    let code = outcome.code.map(|code| format!("  {code} {result}"));
+    // The robot sends the Chinese text of the result, sometimes with a reason behind it.
+    let known = outcome.known.and_then(|known| {
+        let reason = outcome.text.strip_prefix(&known.text.zh)?;
+        Some(format!("{}{reason}", lang().text(&known.text)))
+    });
+    let text = known.unwrap_or_else(|| outcome.text.clone());
+    let text = if text.is_empty() {
+        text
+    } else {
+        format!("  {text}")
+    };
+    let code = code.unwrap_or_default();
+    format!("{name}{code}{text}")
 }
 
 fn int(value: i128) -> Value {
@@ -178,15 +175,12 @@ pub fn breaks_the_spec(model: &Model, operation: &Operation, error: &BodyError) 
     let body = operation.body(Direction::Request);
     let field = body.and_then(|body| paths::field(model, &body.ty, error.path()));
     let accepted = field.and_then(|field| {
-        let numbers = field.details().constraints.numbers()?;
+        let numbers = in_lang(&field.details().constraints.numbers()?);
         let unit = field.details().unit.as_deref().unwrap_or_default();
-        Some(
-            format!("{} {unit}", lang().text(&numbers))
-                .trim_end()
-                .to_owned(),
-        )
+        let accepted = format!("{numbers} {unit}");
+        let accepted = accepted.trim_end();
+        Some(said!("；允许 {accepted}", "; accepted: {accepted}"))
     });
-    let accepted = accepted.map(|accepted| said!("；允许 {accepted}", "; accepted: {accepted}"));
     let accepted = accepted.unwrap_or_default();
     said!(
         "请求不合规范，没有发送：{error}{accepted}",

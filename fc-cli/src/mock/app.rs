@@ -14,7 +14,7 @@ use fc_workshop::scenario::{Expected, Scenario};
 use tokio::sync::mpsc::{Receiver, channel};
 
 use crate::allow::{self, Allowed};
-use crate::call::show::Format;
+use crate::call::show::{Format, summary};
 use crate::endpoint::{at_port, with_port};
 use crate::lang::{both, in_lang, lang, said};
 use crate::outcome::{Failure, Status};
@@ -151,7 +151,6 @@ fn check(model: &Model, scenario: &Scenario, allow: Option<Allowed>) -> Result<(
 fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::io::Result<()> {
     let format = Format {
         json: shown == Shown::Json,
-        lang: lang(),
     };
     let line = match event {
         Event::Waits(name) => {
@@ -170,7 +169,7 @@ fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::
                         Shown::Json => {
                             format.response(Some(name), frame, &outcome, &message, *took)
                         }
-                        Shown::Text => format.summary(name, &outcome) + "\n",
+                        Shown::Text => summary(name, &outcome) + "\n",
                     }
                 }
                 // A deviation follows.
