@@ -111,17 +111,13 @@ impl Part<'_> {
                 "Automatic-Module-Name: {module}\nImplementation-Title: {artifact}\nImplementation-Version: {version}\n"
             ),
         )?;
-        let texts = texts(package)?;
-        let none = Vec::new();
+        let classes = package.join("build").join(name);
+        let sources = package.join(name).join("src/main/kotlin");
         for (classifier, contents, texts) in [
-            ("", Some(package.join("build").join(name)), &texts.licences),
-            (
-                "-sources",
-                Some(package.join(name).join("src/main/kotlin")),
-                &none,
-            ),
+            ("", Some(classes), texts(package, "LICENSE")?),
+            ("-sources", Some(sources), Vec::new()),
             // Without Dokka, which only Gradle runs, the jar that repositories demand has the README.
-            ("-javadoc", None, &texts.readmes),
+            ("-javadoc", None, texts(package, "README")?),
         ] {
             let jar = directory.join(coordinates.file(classifier, "jar"));
             let mut arguments = vec![
@@ -137,7 +133,7 @@ impl Part<'_> {
             if let Some(contents) = &contents {
                 add(contents, ".");
             }
-            for text in texts {
+            for text in &texts {
                 add(package, text);
             }
             JAR.run(package, arguments)?;
@@ -149,26 +145,14 @@ impl Part<'_> {
     }
 }
 
-/// The texts next to the sources of a package.
-struct Texts {
-    licences: Vec<String>,
-    readmes: Vec<String>,
-}
-
-fn texts(package: &Path) -> Result<Texts, Failure> {
-    let entries = files::entries(package)?;
-    let files = entries.iter().filter(|path| path.is_file());
-    let names: Vec<_> = files
-        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
-        .collect();
-    let starting = |start: &str| {
-        let names = names.iter().filter(|name| name.starts_with(start));
-        names.cloned().collect()
-    };
-    Ok(Texts {
-        licences: starting("LICENSE"),
-        readmes: starting("README"),
-    })
+/// Returns the names of the files in a directory that begin with these letters.
+fn texts(directory: &Path, start: &str) -> Result<Vec<String>, Failure> {
+    let entries = files::entries(directory)?.into_iter();
+    let names = entries.filter(|path| path.is_file()).filter_map(|path| {
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        name.starts_with(start).then_some(name)
+    });
+    Ok(names.collect())
 }
 
 /// The settings of a package: lines `key=value`.
