@@ -6,8 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::files;
 use crate::outcome::Failure;
@@ -49,46 +48,28 @@ impl Component {
         url
     }
 
-    fn listed(&self) -> Listed<'_> {
-        Listed {
-            kind: "library",
-            reference: self.url(),
-            group: &self.namespace,
-            name: &self.name,
-            version: &self.version,
-            scope: if self.is_optional { "optional" } else { "" },
-            licenses: (!self.licence.is_empty())
-                .then(|| json!({ "expression": self.licence }))
-                .into_iter()
-                .collect(),
-            purl: self.url(),
-            properties: (!self.requirement.is_empty())
-                .then(|| json!({ "name": "fcproto:requirement", "value": self.requirement }))
-                .into_iter()
-                .collect(),
-        }
+    /// Returns the component as the bill lists it, without empty facts.
+    fn listed(&self) -> Map<String, Value> {
+        let known = |fact: &str, value: Value| (!fact.is_empty()).then_some(value);
+        let scope = if self.is_optional { "optional" } else { "" };
+        let licence = json!([{ "expression": self.licence }]);
+        let requirement = json!([{ "name": "fcproto:requirement", "value": self.requirement }]);
+        let facts = [
+            ("type", Some(json!("library"))),
+            ("bom-ref", Some(json!(self.url()))),
+            ("group", known(&self.namespace, json!(self.namespace))),
+            ("name", Some(json!(self.name))),
+            ("version", known(&self.version, json!(self.version))),
+            ("scope", known(scope, json!(scope))),
+            ("licenses", known(&self.licence, licence)),
+            ("purl", Some(json!(self.url()))),
+            ("properties", known(&self.requirement, requirement)),
+        ];
+        let facts = facts.into_iter();
+        facts
+            .filter_map(|(key, value)| Some((key.to_owned(), value?)))
+            .collect()
     }
-}
-
-/// A component as the bill lists it.
-#[derive(Serialize)]
-struct Listed<'c> {
-    #[serde(rename = "type")]
-    kind: &'static str,
-    #[serde(rename = "bom-ref")]
-    reference: String,
-    #[serde(skip_serializing_if = "str::is_empty")]
-    group: &'c str,
-    name: &'c str,
-    #[serde(skip_serializing_if = "str::is_empty")]
-    version: &'c str,
-    #[serde(skip_serializing_if = "str::is_empty")]
-    scope: &'static str,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    licenses: Vec<Value>,
-    purl: String,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    properties: Vec<Value>,
 }
 
 /// Encodes a part of a package URL. Package URL, "Character encoding": letters, digits and `.-_~:` stay.
