@@ -60,17 +60,14 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
     let leftovers = job.out.join("_CPack_Packages");
     std::fs::remove_dir_all(&leftovers).map_err(unwritable(&leftovers))?;
     let config = input::file(&job.work.join("CPackConfig.cmake"))?;
+    let name = cached("CMAKE_PROJECT_NAME:STATIC=").unwrap_or_default();
     let mut dependencies = debian_dependencies(&config);
     dependencies.extend(cached("ASIO_INCLUDE:PATH=").and_then(|it| asio(Path::new(it))));
     Ok(Packages {
         main: Package {
             component: Component {
-                kind: "generic",
-                name: cached("CMAKE_PROJECT_NAME:STATIC=")
-                    .unwrap_or_default()
-                    .to_owned(),
                 version,
-                ..Component::default()
+                ..Component::new("generic", name)
             },
             dependencies,
         },
@@ -88,11 +85,9 @@ fn debian_dependencies(config: &str) -> Vec<Component> {
     let component = |text: &str| {
         let (name, requirement) = text.split_once(' ').unwrap_or((text, ""));
         Component {
-            kind: "deb",
             namespace: "debian".to_owned(),
-            name: name.to_owned(),
             requirement: requirement.trim_matches(['(', ')']).to_owned(),
-            ..Component::default()
+            ..Component::new("deb", name)
         }
     };
     listed.map(component).collect()
@@ -106,9 +101,7 @@ fn asio(headers: &Path) -> Option<Component> {
     let version = lines.find_map(|line| line.strip_prefix("#define ASIO_VERSION "));
     let (_, version) = version?.split_once("// ")?;
     Some(Component {
-        kind: "generic",
-        name: "asio".to_owned(),
         version: version.trim().to_owned(),
-        ..Component::default()
+        ..Component::new("generic", "asio")
     })
 }

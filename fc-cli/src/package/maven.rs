@@ -59,11 +59,9 @@ impl Coordinates {
     /// Returns the artifact as a component of a bill of materials.
     pub fn component(&self) -> Component {
         Component {
-            kind: "maven",
             namespace: self.group.clone(),
-            name: self.artifact.clone(),
             version: self.version.clone(),
-            ..Component::default()
+            ..Component::new("maven", &self.artifact)
         }
     }
 

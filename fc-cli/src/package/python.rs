@@ -72,11 +72,7 @@ fn dependency(text: &str) -> Component {
 
 /// Returns a component by the name of its package, which a package URL writes in lower case with `-`.
 fn component(name: &str) -> Component {
-    Component {
-        kind: "pypi",
-        name: name.to_lowercase().replace('_', "-"),
-        ..Component::default()
-    }
+    Component::new("pypi", name.to_lowercase().replace('_', "-"))
 }
 
 /// Builds without isolation: an isolated environment would need an index of packages.

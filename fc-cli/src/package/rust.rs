@@ -136,11 +136,9 @@ fn contents(root: &Path, main: &str) -> Result<Packages, Failure> {
 
 fn component(packed: &Crate) -> Component {
     Component {
-        kind: "cargo",
-        name: packed.name.clone(),
         version: packed.version.clone(),
         licence: packed.license.clone().unwrap_or_default(),
-        ..Component::default()
+        ..Component::new("cargo", &packed.name)
     }
 }
 
@@ -149,11 +147,9 @@ fn dependency(dependency: &Dependency, packed: &[Crate]) -> Component {
     let found = packed.iter().find(|it| it.name == dependency.name);
     found.map_or_else(
         || Component {
-            kind: "cargo",
-            name: dependency.name.clone(),
             requirement: dependency.req.clone(),
             is_optional: dependency.optional,
-            ..Component::default()
+            ..Component::new("cargo", &dependency.name)
         },
         component,
     )

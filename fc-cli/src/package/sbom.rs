@@ -33,6 +33,15 @@ pub struct Component {
 }
 
 impl Component {
+    /// Returns a component of which only the type and the name are known.
+    pub fn new(kind: &'static str, name: impl Into<String>) -> Self {
+        Self {
+            kind,
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+
     /// Returns the package URL, which also identifies the component in the bill.
     fn url(&self) -> String {
         let mut url = format!("pkg:{}/", self.kind);

@@ -68,9 +68,7 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
 fn component(name: &str) -> Component {
     let (scope, name) = name.rsplit_once('/').unwrap_or(("", name));
     Component {
-        kind: "npm",
         namespace: scope.to_owned(),
-        name: name.to_owned(),
-        ..Component::default()
+        ..Component::new("npm", name)
     }
 }
