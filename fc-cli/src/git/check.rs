@@ -1,6 +1,5 @@
 //! `fcproto git check`.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
@@ -8,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use fc_codegen::output::{MANIFEST, generated};
 use fc_codegen::target::FILE;
 
-use super::{git, git_with, parts};
+use super::{git_line, git_with, known};
 use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
@@ -57,27 +56,16 @@ struct Staged {
 impl Staged {
     fn of(project: &Project) -> Result<Self, Failure> {
         let root = &project.root;
-        let line = |arguments: &[&str]| -> Result<String, Failure> {
-            let text = git(root, arguments, "")?;
-            Ok(text.trim_end_matches(['\r', '\n']).to_owned())
-        };
-        let top = PathBuf::from(line(&["rev-parse", "--show-toplevel"])?);
+        let top = PathBuf::from(git_line(root, &["rev-parse", "--show-toplevel"])?);
         let staged = Self {
             directory: temporary()?,
-            prefix: line(&["rev-parse", "--show-prefix"])?,
+            prefix: git_line(root, &["rev-parse", "--show-prefix"])?,
         };
         // The tree of the next commit. It leaves out files that are only intended to be added.
-        let tree = git(&top, &["write-tree"], "")?;
-        let index = [(
-            "GIT_INDEX_FILE",
-            staged
-                .directory
-                .join("index")
-                .to_string_lossy()
-                .into_owned(),
-        )];
-        let read = ["read-tree", tree.trim_end_matches(['\r', '\n'])];
-        git_with(&top, &read, "", &index)?;
+        let tree = git_line(&top, &["write-tree"])?;
+        let index = staged.directory.join("index");
+        let index = [("GIT_INDEX_FILE", index.to_string_lossy().into_owned())];
+        git_with(&top, &["read-tree", &tree], "", &index)?;
         let root = std::path::absolute(root)?;
         let spec = root.join(&project.spec);
         let (root, spec) = (root.to_string_lossy(), spec.to_string_lossy());
@@ -106,18 +94,10 @@ impl Staged {
 
     /// Copies the generated files that git ignores, because no commit has them.
     fn take_ignored(&self, project: &Project) -> Result<(), Failure> {
-        let list = [
-            "ls-files",
-            "-z",
-            "--cached",
-            "--others",
-            "--exclude-standard",
-        ];
-        let known = git(&project.root, &list, "")?;
-        let known: BTreeSet<&str> = parts(&known).collect();
+        let known = known(&project.root)?;
         let mut mine = generated(&project.root)?;
         mine.push(MANIFEST.to_owned());
-        for path in mine.iter().filter(|path| !known.contains(path.as_str())) {
+        for path in mine.iter().filter(|path| !known.contains(*path)) {
             let (from, to) = (project.root.join(path), self.root().join(path));
             let copied = to.parent().map_or(Ok(()), fs::create_dir_all);
             match copied.and_then(|()| fs::copy(&from, &to)) {

@@ -7,6 +7,7 @@ pub mod merge;
 pub mod setup;
 pub mod stage;
 
+use std::collections::BTreeSet;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -46,6 +47,29 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 /// Runs git in a directory and returns its output.
 fn git(directory: &Path, arguments: &[&str], input: &str) -> Result<String, Failure> {
     git_with(directory, arguments, input, &[])
+}
+
+/// Runs git in a directory and returns its output without the end of the line.
+fn git_line(directory: &Path, arguments: &[&str]) -> Result<String, Failure> {
+    Ok(line(&git(directory, arguments, "")?).to_owned())
+}
+
+/// Returns a text without the end of its last line.
+fn line(text: &str) -> &str {
+    text.trim_end_matches(['\r', '\n'])
+}
+
+/// Returns the files below a directory that git does not ignore.
+fn known(directory: &Path) -> Result<BTreeSet<String>, Failure> {
+    let list = [
+        "ls-files",
+        "-z",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+    ];
+    let known = git(directory, &list, "")?;
+    Ok(parts(&known).map(str::to_owned).collect())
 }
 
 /// Runs git with additional environment variables.

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::attributes::{DRIVER, missing};
-use super::git;
+use super::{git, git_line};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status, unwritable};
 use crate::place::Place;
@@ -113,10 +113,9 @@ fn this_command() -> Result<String, Failure> {
 
 /// Returns the hooks to write. Fails if a hook of another program exists.
 fn hooks(root: &Path, command: &str) -> Result<Vec<(PathBuf, String)>, Failure> {
-    let directory = git(root, &["rev-parse", "--git-path", "hooks"], "")?;
-    let directory = root.join(directory.trim_end_matches(['\r', '\n']));
-    let prefix = git(root, &["rev-parse", "--show-prefix"], "")?;
-    let prefix = prefix.trim_end_matches(['\r', '\n']).trim_end_matches('/');
+    let directory = root.join(git_line(root, &["rev-parse", "--git-path", "hooks"])?);
+    let prefix = git_line(root, &["rev-parse", "--show-prefix"])?;
+    let prefix = prefix.trim_end_matches('/');
     // Git runs hooks at the root of the working tree.
     let enter = if prefix.is_empty() {
         String::new()

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fc_codegen::output::{MANIFEST, generated};
 
-use super::{git, git_with, parts};
+use super::{git, git_line, git_with, known, line};
 use crate::generate;
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
@@ -32,16 +32,9 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     let mut mine: BTreeSet<String> = before.into_iter().chain(generated(root)?).collect();
     mine.insert(MANIFEST.to_owned());
-    let list = [
-        "ls-files",
-        "-z",
-        "--cached",
-        "--others",
-        "--exclude-standard",
-    ];
-    let known = git(root, &list, "")?;
-    let paths: BTreeSet<&str> = parts(&known).filter(|path| mine.contains(*path)).collect();
-    let paths: String = paths.iter().flat_map(|path| [path, "\0"]).collect();
+    let known = known(root)?;
+    let paths = known.intersection(&mine);
+    let paths: String = paths.flat_map(|path| [path, "\0"]).collect();
     let add = ["update-index", "--add", "--remove", "-z", "--stdin"];
     git(root, &add, &paths)?;
     let is_staged = !git(root, &["diff", "--cached", "--name-only"], "")?.is_empty();
@@ -55,10 +48,9 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 fn amend(root: &Path) -> Result<(), Failure> {
     let of_last = |format: &str| {
         let format = format!("--format={format}");
-        git(root, &["log", "-1", "--date=raw", &format], "")
+        git_line(root, &["log", "-1", "--date=raw", &format])
     };
-    let line = |text: String| text.trim_end_matches(['\r', '\n']).to_owned();
-    let tree = line(git(root, &["write-tree"], "")?);
+    let tree = git_line(root, &["write-tree"])?;
     let parents = of_last("%P")?;
     let mut make = vec!["commit-tree", &tree, "-F", "-"];
     for parent in parents.split_whitespace() {
@@ -70,14 +62,15 @@ fn amend(root: &Path) -> Result<(), Failure> {
         make.push("-S");
     }
     let author = [
-        ("GIT_AUTHOR_NAME", line(of_last("%an")?)),
-        ("GIT_AUTHOR_EMAIL", line(of_last("%ae")?)),
-        ("GIT_AUTHOR_DATE", line(of_last("%ad")?)),
+        ("GIT_AUTHOR_NAME", of_last("%an")?),
+        ("GIT_AUTHOR_EMAIL", of_last("%ae")?),
+        ("GIT_AUTHOR_DATE", of_last("%ad")?),
     ];
-    let message = line(of_last("%B")?) + "\n";
-    let last = line(git(root, &["rev-parse", "HEAD"], "")?);
-    let commit = line(git_with(root, &make, &message, &author)?);
+    let message = of_last("%B")? + "\n";
+    let last = git_line(root, &["rev-parse", "HEAD"])?;
+    let commit = git_with(root, &make, &message, &author)?;
     let why = "fcproto git stage --amend";
-    git(root, &["update-ref", "-m", why, "HEAD", &commit, &last], "")?;
+    let update = ["update-ref", "-m", why, "HEAD", line(&commit), &last];
+    git(root, &update, "")?;
     Ok(())
 }
