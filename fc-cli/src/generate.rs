@@ -108,18 +108,11 @@ pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<
 }
 
 impl Options {
-    /// Returns the options of a run that checks the files of these targets and writes nothing.
-    pub fn checking_only(targets: Vec<String>) -> Self {
-        Self {
-            only: targets,
-            ..Self::checking()
-        }
-    }
-
-    /// Returns the options of a run that checks all files and writes nothing.
-    pub fn checking() -> Self {
+    /// Returns the options of a run that checks the files of these targets, or of all, and writes nothing.
+    pub fn checking(only: Vec<String>) -> Self {
         Self {
             check: true,
+            only,
             ..Self::default()
         }
     }
@@ -232,25 +225,22 @@ fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<St
 
 /// Returns a summary of the changed files.
 fn summary(plan: &Plan) -> String {
-    let created = plan.created.iter().map(|file| file.path.as_str());
-    let updated = plan.updated.iter().map(|file| file.path.as_str());
-    let removed = plan.orphaned.iter().map(|file| file.path.as_str());
     let mut out = String::new();
-    for (what, paths) in [
-        (said!("新建", "created"), created.collect::<Vec<_>>()),
-        (said!("更新", "updated"), updated.collect()),
-        (said!("删除", "removed"), removed.collect()),
+    for (what, changed) in [
+        (both("新建", "created"), &plan.created),
+        (both("更新", "updated"), &plan.updated),
+        (both("删除", "removed"), &plan.orphaned),
     ] {
-        if paths.is_empty() {
+        if changed.is_empty() {
             continue;
         }
-        let files = counted(paths.len(), "文件", "file");
+        let files = counted(changed.len(), "文件", "file");
         out += &said!("{what} {files}\n", "{what:<10} {files}\n");
-        for path in paths.iter().take(NAMED) {
-            let _ = writeln!(out, "             {path}");
+        for file in changed.iter().take(NAMED) {
+            let _ = writeln!(out, "             {}", file.path);
         }
-        if paths.len() > NAMED {
-            let more = paths.len() - NAMED;
+        if changed.len() > NAMED {
+            let more = changed.len() - NAMED;
             out += &said!(
                 "             另有 {more} 个\n",
                 "             and {more} more\n"
@@ -266,27 +256,20 @@ fn summary(plan: &Plan) -> String {
 
 /// Returns the command that brings the files up to date, with the options of this run.
 fn command(place: &Place, options: &Options) -> String {
+    let path = |path: &Option<PathBuf>| path.as_ref().map(|it| it.display().to_string());
+    let only = options.only.join(",");
+    let options = [
+        ("--only", Some(only).filter(|it| !it.is_empty())),
+        ("--for", options.audience.clone()),
+        ("--out", path(&options.out)),
+        ("--from", path(&options.from)),
+        ("--as-of", options.as_of.clone()),
+        ("--root", path(&place.root)),
+        ("--spec", path(&place.spec)),
+    ];
     let mut command = "fcproto generate".to_owned();
-    if !options.only.is_empty() {
-        let _ = write!(command, " --only {}", options.only.join(","));
-    }
-    if let Some(audience) = &options.audience {
-        let _ = write!(command, " --for {audience}");
-    }
-    if let Some(out) = &options.out {
-        let _ = write!(command, " --out {}", out.display());
-    }
-    if let Some(path) = &options.from {
-        let _ = write!(command, " --from {}", path.display());
-    }
-    if let Some(release) = &options.as_of {
-        let _ = write!(command, " --as-of {release}");
-    }
-    if let Some(root) = &place.root {
-        let _ = write!(command, " --root {}", root.display());
-    }
-    if let Some(spec) = &place.spec {
-        let _ = write!(command, " --spec {}", spec.display());
+    for (option, value) in options {
+        command.extend(value.map(|value| format!(" {option} {value}")));
     }
     command
 }

@@ -42,7 +42,7 @@ pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
     if status != Status::Fine {
         return Ok(status);
     }
-    let options = generate::Options::checking();
+    let options = generate::Options::checking(Vec::new());
     generate::in_project(Project::find(&there)?, place, &options)
 }
 

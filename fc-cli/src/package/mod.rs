@@ -142,7 +142,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let languages = options.languages(&project)?;
     let names = languages.iter().map(|it| it.name().to_owned()).collect();
-    let checking = generate::Options::checking_only(names);
+    let checking = generate::Options::checking(names);
     let status = generate::in_project(project.clone(), place, &checking)?;
     let spec = Spec::in_project(&project);
     let Some(model) = spec.model.filter(|_| status == Status::Fine) else {
