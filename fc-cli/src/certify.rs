@@ -157,8 +157,7 @@ fn test_app(reflector: &Reflector<'_>, options: &Options) -> Result<Option<Teste
         let end = interrupt.next();
         let trials = certify::app(reflector, listeners, wait, &mut told, end).await;
         if trials.is_none() {
-            let error = said!("没有 app 连接", "no app has connected");
-            print::failure(Failure::from(error).as_ref());
+            let _ = print::error(both("没有 app 连接", "no app has connected"));
         }
         Ok(trials.map(|trials| (addresses.0.to_string(), trials)))
     })?

@@ -1,6 +1,5 @@
 //! `fcproto generate`.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use fc_codegen::emit::generate;
@@ -16,9 +15,6 @@ use crate::project::{Project, is_there};
 use crate::spec::Spec;
 use crate::versions::Shelf;
 use crate::{input, plugin, print, progress, watch};
-
-/// The maximum number of paths that a message lists.
-const NAMED: usize = 10;
 
 /// Options of `fcproto generate`.
 #[derive(Debug, Default, clap::Args)]
@@ -215,11 +211,10 @@ fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<St
     let verb = if stale == 1 { "is" } else { "are" };
     let files = counted(stale, "文件", "file");
     let command = command(place, options);
-    let line = said!(
-        "错误：{files}已过期；运行 `{command}`\n",
-        "error: {files} {verb} stale; run `{command}`\n"
-    );
-    print::message(&print::leveled(&line))?;
+    print::error(&said!(
+        "{files}已过期；运行 `{command}`",
+        "{files} {verb} stale; run `{command}`"
+    ))?;
     Ok(Status::Faulty)
 }
 
@@ -236,16 +231,9 @@ fn summary(plan: &Plan) -> String {
         }
         let files = counted(changed.len(), "文件", "file");
         out += &said!("{what} {files}\n", "{what:<10} {files}\n");
-        for file in changed.iter().take(NAMED) {
-            let _ = writeln!(out, "             {}", file.path);
-        }
-        if changed.len() > NAMED {
-            let more = changed.len() - NAMED;
-            out += &said!(
-                "             另有 {more} 个\n",
-                "             and {more} more\n"
-            );
-        }
+        let indent = "             ";
+        let lines = changed.iter();
+        out += &print::first(lines.map(|it| format!("{indent}{}\n", it.path)), indent);
     }
     if !plan.unchanged.is_empty() {
         let unchanged = counted(plan.unchanged.len(), "文件", "file");

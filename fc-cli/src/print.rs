@@ -74,10 +74,14 @@ pub fn failure(failure: &(dyn Error + 'static)) {
         let _ = faults(&settings.faults, &settings.sources);
         return;
     }
-    let failure = words(failure);
     // If standard error is closed as well, the exit status is the only signal.
-    let error = said!("错误：{failure}\n", "error: {failure}\n");
-    let _ = message(&leveled(&error));
+    let _ = error(&words(failure));
+}
+
+/// Prints an error to standard error.
+pub fn error(text: &str) -> io::Result<()> {
+    let line = said!("错误：{text}\n", "error: {text}\n");
+    message(&leveled(&line))
 }
 
 /// Returns the reason in the language of this run. Errors of libraries are in English only.
@@ -103,6 +107,19 @@ fn words(failure: &(dyn Error + 'static)) -> String {
         ListenError
     );
     failure.to_string()
+}
+
+/// The maximum number of paths that a message lists.
+const NAMED: usize = 10;
+
+/// Returns the first lines of a list, and the number of the others after `indent`.
+pub fn first(lines: impl ExactSizeIterator<Item = String>, indent: &str) -> String {
+    let more = lines.len().saturating_sub(NAMED);
+    let mut text: String = lines.take(NAMED).collect();
+    if more > 0 {
+        text += &said!("{indent}另有 {more} 个\n", "{indent}and {more} more\n");
+    }
+    text
 }
 
 /// Returns a success word in color.

@@ -181,7 +181,7 @@ fn show(model: &Model, format: Shown, event: &Event<'_, '_>) -> io::Result<()> {
                 "无法连接机器人 {address}：{error}",
                 "cannot connect to the robot {address}: {error}"
             );
-            print::failure(Failure::from(error).as_ref());
+            let _ = print::error(&error);
             return Ok(());
         }
     };

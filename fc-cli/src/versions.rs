@@ -125,10 +125,10 @@ impl Shelf {
                 faults,
             }) => {
                 print::message(&render(&faults, &sources, Format::Colored, lang()))?;
-                print::message(&print::leveled(&said!(
-                    "错误：`{name}` 的规范有错误\n",
-                    "error: the spec of `{name}` has errors\n"
-                )))?;
+                print::error(&said!(
+                    "`{name}` 的规范有错误",
+                    "the spec of `{name}` has errors"
+                ))?;
                 Ok(None)
             }
             Err(error) => Err(error.into()),

@@ -16,7 +16,7 @@ use fc_spec::syntax::read_dir;
 use notify::event::AccessKind;
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher as _};
 
-use crate::lang::{lang, said};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::{Project, settings};
@@ -27,9 +27,6 @@ const CALM: Duration = Duration::from_millis(100);
 
 /// The maximum time until the spec is read again, even if events continue.
 const AT_MOST: Duration = Duration::from_secs(1);
-
-/// The maximum number of files that a message lists.
-const NAMED: usize = 10;
 
 /// Runs `work`, and runs it again after each change of the spec or `fc.yaml`, until Ctrl-C. Errors of the spec and
 /// failures are shown, and the loop continues.
@@ -196,27 +193,20 @@ impl Input {
         let new = self.files.iter().filter(|file| !last.files.contains(file));
         let new = new.map(|(path, _)| {
             let what = if lacks(last, path) {
-                lang().pick("新增", "new")
+                both("新增", "new")
             } else {
-                lang().pick("改动", "changed")
+                both("改动", "changed")
             };
             (what, path)
         });
-        let gone = last
-            .files
-            .iter()
-            .map(|(path, _)| (lang().pick("删除", "gone"), path));
+        let gone = last.files.iter();
+        let gone = gone.map(|(path, _)| (both("删除", "gone"), path));
         let all: Vec<_> = new
             .chain(gone.filter(|(_, path)| lacks(self, path)))
             .collect();
-        let mut text = "\n".to_owned();
-        for (what, path) in all.iter().take(NAMED) {
-            text += &said!("{what} {path}\n", "{what:<10} {path}\n");
-        }
-        if all.len() > NAMED {
-            let more = all.len() - NAMED;
-            text += &said!("     另有 {more} 个\n", "           and {more} more\n");
-        }
-        text
+        let lines = all.iter();
+        let lines = lines.map(|(what, path)| said!("{what} {path}\n", "{what:<10} {path}\n"));
+        let indent = both("     ", "           ");
+        "\n".to_owned() + &print::first(lines, indent)
     }
 }

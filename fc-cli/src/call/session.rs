@@ -189,10 +189,9 @@ fn value(data: &[u8]) -> Value {
 }
 
 fn invalid(error: &fc_reflect::BodyError) -> Status {
-    let text = said!(
+    let _ = print::error(&said!(
         "响应不合规范：{error}",
         "the response breaks the spec: {error}"
-    );
-    print::failure(Failure::from(text).as_ref());
+    ));
     Status::Unanswered
 }

@@ -183,8 +183,7 @@ fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::
         },
         Event::Deviation(name, deviation) => {
             let deviation = in_lang(deviation);
-            let text = said!("`{name}`：{deviation}", "`{name}`: {deviation}");
-            print::failure(Failure::from(text).as_ref());
+            let _ = print::error(&said!("`{name}`：{deviation}", "`{name}`: {deviation}"));
             return Ok(());
         }
     };

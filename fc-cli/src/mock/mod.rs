@@ -183,7 +183,7 @@ fn robot(model: &Model, options: &Options, scenario: Option<Scenario>) -> Result
             print::done(&format!("{text}\n"))?;
             return Ok(Status::Fine);
         }
-        print::failure(Failure::from(text).as_ref());
+        let _ = print::error(&text);
         Ok(Status::Faulty)
     })?
 }

@@ -11,7 +11,6 @@ mod sums;
 mod tool;
 mod typescript;
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -31,9 +30,6 @@ use crate::versions::Shelf;
 use crate::{input, print, progress};
 
 use sbom::Packages;
-
-/// The maximum number of paths that a message lists.
-const NAMED: usize = 10;
 
 /// Options of `fcproto package`.
 #[derive(Debug, clap::Args)]
@@ -158,10 +154,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
             Ok(text) => print::done(&text)?,
             Err(failure) => {
                 status = Status::Faulty;
-                print::message(&print::leveled(&said!(
-                    "错误：{name}：{failure}\n",
-                    "error: {name}: {failure}\n"
-                )))?;
+                print::error(&said!("{name}：{failure}", "{name}: {failure}"))?;
             }
         }
     }
@@ -214,19 +207,9 @@ fn pack(
     let version = &packages.main.component.version;
     let name = language.name();
     let listed = sums::replace(out, name, &job.out)?;
-    let mut text = format!(
-        "{} {name} {version}\n",
-        print::good(&said!("已打包", "packed"))
-    );
-    for path in listed.iter().take(NAMED) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "  {path}");
-    }
-    if listed.len() > NAMED {
-        let more = listed.len() - NAMED;
-        text += &said!("  另有 {more} 个\n", "  and {more} more\n");
-    }
-    Ok(text)
+    let packed = print::good(&said!("已打包", "packed"));
+    let listed = print::first(listed.iter().map(|path| format!("  {path}\n")), "  ");
+    Ok(format!("{packed} {name} {version}\n{listed}"))
 }
 
 /// Returns the edition of a package: the release of the spec if it has the same content as the working tree.
