@@ -1,11 +1,8 @@
 //! `fcproto check`.
 
-use std::fmt::Write as _;
-
 use clap::ValueEnum;
-use fc_codegen::output::{replace_spec_file, unified};
 use fc_spec::diagnostic::{Faults, Format, render};
-use fc_spec::fix::{Done, fix_all};
+use fc_spec::fix::fix_all;
 use fc_spec::source::Sources;
 
 use crate::lang::{both, counted, lang, said};
@@ -13,7 +10,7 @@ use crate::outcome::{Failure, Status};
 use crate::output::Output;
 use crate::place::Place;
 use crate::print;
-use crate::project::{Project, in_repository};
+use crate::project::{Project, changed, in_repository};
 use crate::spec::Spec;
 
 /// Options of `fcproto check`.
@@ -99,37 +96,20 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
         }
         return Ok(spec);
     };
-    let mut changed = String::new();
-    for ((_, old), (_, new)) in spec.sources.iter().zip(fixed.sources.iter()) {
-        if old.text == new.text {
-            continue;
-        }
-        let path = &old.path;
-        if options.dry_run {
-            let (before, after) = (format!("a/{path}"), format!("b/{path}"));
-            changed += &print::diff(&unified(&before, &after, &old.text, &new.text));
-        } else {
-            replace_spec_file(&project.root, path, &new.text)?;
-        }
-    }
-    let mut told = String::new();
-    for Done {
-        code,
-        path,
-        line,
-        message,
-    } in &fixed.done
-    {
-        let message = lang().text(message);
-        let fixed = print::good(&said!("已修改", "fixed"));
-        let _ = writeln!(told, "{fixed} {path}:{line} {code}: {message}");
-    }
     if options.dry_run {
-        print::result(&changed)?;
+        let changes = changed(&spec.sources, &fixed.sources);
+        let changes = changes.map(|(old, new)| print::change(&old.path, &old.text, &new.text));
+        print::result(&changes.collect::<String>())?;
         return Ok(spec);
     }
+    project.write_changes(&spec.sources, &fixed.sources)?;
     if options.output.format == Shown::Text {
-        print::done(&told)?;
+        let good = print::good(&said!("已修改", "fixed"));
+        let lines = fixed.done.iter().map(|it| {
+            let message = lang().text(&it.message);
+            format!("{good} {}:{} {}: {message}\n", it.path, it.line, it.code)
+        });
+        print::done(&lines.collect::<String>())?;
     }
     Ok(Spec::in_project(project))
 }

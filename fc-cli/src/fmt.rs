@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use fc_codegen::output::{replace_spec_file, unified};
+use fc_codegen::output::replace_spec_file;
 use fc_spec::diagnostic::Faults;
 use fc_spec::format::{Refused, format};
 use fc_spec::source::{FileId, SourceFile};
@@ -185,8 +185,7 @@ impl Run<'_> {
                 print::good(&said!("已排版", "formatted"))
             )?;
         } else if self.options.diff {
-            let (before, after) = (format!("a/{path}"), format!("b/{path}"));
-            self.shown += &print::diff(&unified(&before, &after, &file.text, new));
+            self.shown += &print::change(path, &file.text, new);
         } else {
             writeln!(self.shown, "{path}")?;
         }

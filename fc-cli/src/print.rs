@@ -1,6 +1,6 @@
 //! Output to the terminal. All texts may contain ANSI colors, and the streams remove them where they are not supported.
 
-use fc_codegen::output::OutputError;
+use fc_codegen::output::{OutputError, unified};
 use fc_codegen::target::TargetError;
 use fc_diff::VersionError;
 use fc_spec::diagnostic::{Faults, Format, render, summary};
@@ -150,6 +150,12 @@ pub fn diff(text: &str) -> String {
         let _ = writeln!(out, "{style}{line}{style:#}");
     }
     out
+}
+
+/// Returns the change of a file as a colored diff.
+pub fn change(path: &str, old: &str, new: &str) -> String {
+    let (before, after) = (format!("a/{path}"), format!("b/{path}"));
+    diff(&unified(&before, &after, old, new))
 }
 
 /// Returns `true` if a command failed because its output was closed, as in `fcproto explain | head`.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use fc_codegen::output::replace_spec_file;
 use fc_codegen::target::{FILE, Targets};
 use fc_spec::diagnostic::Faults;
-use fc_spec::source::Sources;
+use fc_spec::source::{SourceFile, Sources};
 use fc_spec::syntax::read_files;
 
 use crate::lang::{in_lang, said};
@@ -70,11 +70,9 @@ impl Project {
     /// Writes the files of the spec that have changed, and returns their paths.
     pub fn write_changes(&self, before: &Sources, after: &Sources) -> Result<Vec<String>, Failure> {
         let mut written = Vec::new();
-        for ((_, before), (_, file)) in before.iter().zip(after.iter()) {
-            if file.text != before.text {
-                replace_spec_file(&self.root, &file.path, &file.text)?;
-                written.push(file.path.clone());
-            }
+        for (_, file) in changed(before, after) {
+            replace_spec_file(&self.root, &file.path, &file.text)?;
+            written.push(file.path.clone());
         }
         Ok(written)
     }
@@ -94,6 +92,16 @@ impl Project {
             targets,
         })
     }
+}
+
+/// Returns the files of a spec whose text has changed, before and after the change.
+pub fn changed<'s>(
+    before: &'s Sources,
+    after: &'s Sources,
+) -> impl Iterator<Item = (&'s SourceFile, &'s SourceFile)> {
+    let pairs = before.iter().zip(after.iter());
+    let pairs = pairs.map(|((_, before), (_, after))| (before, after));
+    pairs.filter(|(before, after)| before.text != after.text)
 }
 
 /// Reads the text of `fc.yaml`. Returns `None` if the file does not exist.
