@@ -1,6 +1,6 @@
 //! Input files of the command line, or standard input for `-`. Reading stops at a size limit.
 
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 use fc_spec::model::Text;
@@ -8,6 +8,7 @@ use fc_spec::text;
 
 use crate::lang::said;
 use crate::outcome::Failure;
+use crate::project::is_there;
 
 /// The maximum size of an input, in bytes.
 const LONGEST: u64 = 256 << 20;
@@ -16,7 +17,7 @@ const LONGEST: u64 = 256 << 20;
 fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let name = path.display();
     if path.as_os_str() == "-" {
-        return bounded(std::io::stdin(), &text!("标准输入", "standard input"));
+        return bounded(io::stdin(), &text!("标准输入", "standard input"));
     }
     if path.is_dir() {
         return Err(said!(
@@ -54,14 +55,23 @@ pub fn file(path: &Path) -> Result<String, Failure> {
     text(path)
 }
 
-fn bounded(input: impl Read, name: &Text) -> Result<Vec<u8>, Failure> {
+/// Reads the text of a file of the project, or returns `None` if nothing is there.
+pub fn file_if_there(path: &Path) -> Result<Option<String>, Failure> {
+    is_there(path).then(|| file(path)).transpose()
+}
+
+/// Reads bytes up to a limit, or returns `None` if there are more.
+pub fn up_to(most: u64, input: impl Read) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     // The extra byte shows that the input is too large.
-    let mut input = input.take(LONGEST.saturating_add(1));
-    input
-        .read_to_end(&mut bytes)
-        .map_err(|error| cannot(name, &error))?;
-    if u64::try_from(bytes.len()).is_ok_and(|read| read <= LONGEST) {
+    input.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    let fits = u64::try_from(bytes.len()).is_ok_and(|read| read <= most);
+    Ok(fits.then_some(bytes))
+}
+
+fn bounded(input: impl Read, name: &Text) -> Result<Vec<u8>, Failure> {
+    let read = up_to(LONGEST, input).map_err(|error| cannot(name, &error))?;
+    if let Some(bytes) = read {
         return Ok(bytes);
     }
     let most = LONGEST >> 20;
@@ -74,7 +84,7 @@ fn bounded(input: impl Read, name: &Text) -> Result<Vec<u8>, Failure> {
     .into())
 }
 
-fn cannot(name: &Text, error: &std::io::Error) -> Failure {
+fn cannot(name: &Text, error: &io::Error) -> Failure {
     said!(
         "无法读取{name}：{error}",
         "cannot read {name}: {error}",

@@ -2,7 +2,7 @@
 
 mod group;
 
-use std::io::{self, Read, Write as _};
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -15,6 +15,7 @@ use fc_codegen::target::{Plugin, part};
 use fc_spec::model::{Model, Text};
 use fc_spec::text;
 
+use crate::input::up_to;
 use crate::lang::said;
 use crate::outcome::Failure;
 use group::Group;
@@ -97,22 +98,12 @@ fn start(plugin: &Plugin, question: String, root: &Path) -> io::Result<Running> 
     let answered: Sender<Event> = sender.clone();
     thread::spawn(move || {
         let answer = stdout.as_mut();
-        let answer = answer.map_or(Ok(Some(Vec::new())), |stdout| bounded(stdout, most));
+        let answer = answer.map_or(Ok(Some(Vec::new())), |stdout| up_to(most, stdout));
         // The pipe is open until the answer is sent. Otherwise, SIGPIPE could end the program first.
         answered.send(Event::Answer(answer))
     });
     thread::spawn(move || sender.send(Event::End(child.wait())));
     Ok(Running { group, events })
-}
-
-/// Reads the whole output, or returns `None` if it is too long.
-fn bounded(output: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
-    let mut bytes = Vec::new();
-    output
-        .take(most.saturating_add(1))
-        .read_to_end(&mut bytes)?;
-    let fits = u64::try_from(bytes.len()).is_ok_and(|read| read <= most);
-    Ok(fits.then_some(bytes))
 }
 
 impl Running {

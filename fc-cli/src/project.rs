@@ -33,11 +33,6 @@ impl Project {
         Self::at(root(place)?, place)
     }
 
-    /// Returns the directory of that project. It does not read `fc.yaml`.
-    pub fn root(place: &Place) -> Result<PathBuf, Failure> {
-        root(place)
-    }
-
     /// Returns the directory of the spec without `fc.yaml`, relative to the root.
     pub fn usual_spec(place: &Place) -> PathBuf {
         let spec = place.spec.clone();
@@ -82,10 +77,8 @@ impl Project {
             Some(text) => Targets::read(&text)?,
             None => Targets::default(),
         };
-        let spec = place
-            .spec
-            .clone()
-            .unwrap_or_else(|| PathBuf::from(&targets.spec));
+        let spec = place.spec.clone();
+        let spec = spec.unwrap_or_else(|| PathBuf::from(&targets.spec));
         Ok(Self {
             root,
             spec,
@@ -128,7 +121,8 @@ pub fn is_there(path: &Path) -> bool {
     }
 }
 
-fn root(place: &Place) -> Result<PathBuf, Failure> {
+/// Returns the directory of the project that [`Project::find`] finds. It does not read `fc.yaml`.
+pub fn root(place: &Place) -> Result<PathBuf, Failure> {
     if let Some(root) = &place.root {
         if !root.is_dir() {
             let root = root.display();
@@ -187,8 +181,12 @@ pub fn in_repository(root: &Path) -> String {
             found.map(PathBuf::from)
         })
         .or_else(|| std::env::current_dir().ok()?.canonicalize().ok());
-    let below = repository.and_then(|path| Some(root.strip_prefix(path).ok()?.to_owned()));
-    let parts = below.iter().flat_map(|path| path.iter());
-    let parts: Vec<_> = parts.map(|part| part.to_string_lossy()).collect();
+    let below = repository.and_then(|path| Some(slashed(root.strip_prefix(path).ok()?)));
+    below.unwrap_or_default()
+}
+
+/// Returns a path with `/` as separator.
+pub fn slashed(path: &Path) -> String {
+    let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
 }

@@ -1,7 +1,6 @@
 //! `fcproto release`.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use fc_codegen::inspect::release_dump;
 use fc_codegen::output::replace_spec_file;
@@ -14,7 +13,7 @@ use fc_spec::source::Sources;
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::project::{Project, is_there};
+use crate::project::{Project, slashed};
 use crate::spec::Spec;
 use crate::versions::{Shelf, day, today};
 use crate::{input, print};
@@ -226,20 +225,10 @@ fn write(
     for (lang, name, section) in sections {
         let path = slashed(&shelf.file(&format!("{DIRECTORY}/{name}")));
         let disk = project.root.join(&path);
-        let before = if is_there(&disk) {
-            Some(input::file(&disk)?)
-        } else {
-            None
-        };
+        let before = input::file_if_there(&disk)?;
         let text = with_section(before.as_deref(), section, *lang);
         replace_spec_file(&project.root, &path, &text)?;
         written.push(path);
     }
     Ok(written)
-}
-
-/// Returns a path with `/` as separator.
-fn slashed(path: &Path) -> String {
-    let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-    parts.join("/")
 }

@@ -20,7 +20,7 @@ use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::{Project, settings};
-use crate::{plugin, print};
+use crate::{plugin, print, project};
 
 /// The time without events before the spec is read again. Editors and git change several files at once.
 const CALM: Duration = Duration::from_millis(100);
@@ -34,7 +34,7 @@ pub fn run(
     place: &Place,
     work: impl Fn(&Place) -> Result<Status, Failure>,
 ) -> Result<Status, Failure> {
-    let root = Project::root(place)?;
+    let root = project::root(place)?;
     let place = Place {
         root: Some(root.clone()),
         spec: place.spec.clone(),

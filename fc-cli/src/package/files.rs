@@ -9,6 +9,7 @@ use toml_edit::DocumentMut;
 use crate::input;
 use crate::lang::said;
 use crate::outcome::{Failure, unwritable};
+use crate::project::slashed;
 
 /// Creates a directory with its parents, and returns its path.
 pub fn directory(path: &Path) -> Result<PathBuf, Failure> {
@@ -39,9 +40,7 @@ pub fn below(directory: &Path) -> Result<Vec<String>, Failure> {
                 left.push(path);
                 continue;
             }
-            let path = path.strip_prefix(directory)?;
-            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-            found.push(parts.join("/"));
+            found.push(slashed(path.strip_prefix(directory)?));
         }
     }
     found.sort();

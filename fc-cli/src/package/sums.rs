@@ -10,7 +10,6 @@ use sha2::{Digest, Sha256};
 use super::files;
 use crate::input;
 use crate::outcome::{Failure, unwritable};
-use crate::project::is_there;
 
 /// The name of the list.
 const FILE: &str = "SHA256SUMS";
@@ -35,11 +34,7 @@ pub fn of_file(path: &Path) -> Result<String, Failure> {
 /// Files that the list does not name stay.
 pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, Failure> {
     let list = out.join(FILE);
-    let text = if is_there(&list) {
-        input::file(&list)?
-    } else {
-        String::new()
-    };
+    let text = input::file_if_there(&list)?.unwrap_or_default();
     let lines = text.lines().filter_map(|line| line.split_once("  "));
     let mut sums: BTreeMap<String, String> = lines
         .map(|(sum, path)| (path.to_owned(), sum.to_owned()))
