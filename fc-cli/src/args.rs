@@ -3,7 +3,7 @@
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::help::{PageOptions, global};
+use crate::help::global;
 use crate::lang::{Language, both};
 use crate::place::Place;
 use crate::{
@@ -93,7 +93,7 @@ pub enum Command {
     Completions(shell::Completions),
     Man(shell::Man),
     #[command(hide = true)]
-    HelpPage(PageOptions),
+    HelpPage,
 }
 
 /// When colors are used.

@@ -119,6 +119,6 @@ fn run(args: &Args) -> Result<Status, Failure> {
         Command::Git(options) => git::run(&args.place, options),
         Command::GitDiff(options) => git::diff::run(&args.place, options),
         Command::Schema(options) => schema::run(&args.place, options),
-        Command::HelpPage(_) => help::page(),
+        Command::HelpPage => help::page(),
     }
 }

@@ -14,11 +14,7 @@ use crate::place::Place;
 use crate::project::{Project, is_there};
 use crate::{check, fmt, generate, print};
 
-/// Options of `fcproto git check`.
-#[derive(Debug, clap::Args)]
-pub struct Options {}
-
-pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
+pub fn run(place: &Place) -> Result<Status, Failure> {
     let project = Project::find(place)?;
     let staged = Staged::of(&project)?;
     let root = staged.root();

@@ -28,7 +28,7 @@ pub struct Options {
 #[derive(Debug, clap::Subcommand)]
 enum Action {
     Setup(setup::Options),
-    Check(check::Options),
+    Check,
     Stage(stage::Options),
     Diff(diff::Options),
     Merge(merge::Options),
@@ -37,7 +37,7 @@ enum Action {
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     match &options.command {
         Action::Setup(options) => setup::run(place, options),
-        Action::Check(options) => check::run(place, options),
+        Action::Check => check::run(place),
         Action::Stage(options) => stage::run(place, options),
         Action::Diff(options) => diff::run(place, options),
         Action::Merge(options) => merge::run(place, options),

@@ -13,7 +13,7 @@ use clap::{Arg, ArgAction, Command, CommandFactory as _};
 use crate::args::Args;
 use crate::lang::both;
 
-pub use page::{Options as PageOptions, run as page};
+pub use page::run as page;
 
 /// The texts of a command without those of its arguments.
 #[derive(Debug)]

@@ -9,10 +9,6 @@ use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
-/// Options of `fcproto help-page`.
-#[derive(Debug, clap::Args)]
-pub struct Options {}
-
 pub fn run() -> Result<Status, Failure> {
     print::result(&page())?;
     Ok(Status::Fine)
@@ -111,10 +107,7 @@ fn language() -> String {
 fn global(root: &Command) -> String {
     let (_, shared) = arguments(root);
     let title = super::global();
-    format!(
-        "\n## {title} {{#global}}\n{}",
-        options(&shared.iter().collect::<Vec<_>>())
-    )
+    format!("\n## {title} {{#global}}\n{}", options(&shared))
 }
 
 /// Returns the section of a command.
@@ -126,13 +119,13 @@ fn section(command: &mut Command, path: &[&str], help: &Help) -> String {
     let mut text =
         format!("\n## fcproto {name} {{#{id}}}\n\n{summary}{stop}\n\n```text\n{usage}\n```\n");
     let (own, _) = arguments(command);
-    text += &options(&own.iter().collect::<Vec<_>>());
+    text += &options(&own);
     text.extend(help.details.iter().map(details));
     text
 }
 
 /// Returns a table of arguments, and a table for the values of each argument that has described values.
-fn options(shown: &[&Shown<'_>]) -> String {
+fn options(shown: &[Shown<'_>]) -> String {
     if shown.is_empty() {
         return String::new();
     }
@@ -155,11 +148,10 @@ fn options(shown: &[&Shown<'_>]) -> String {
             let names = names.collect::<Vec<_>>().join(both("、", ", "));
             text += &said!("：{names}", ": {names}");
         }
-        let is_value = !shown.argument.get_default_values().is_empty() && shown.default.is_some();
+        let is_value = !shown.argument.get_default_values().is_empty();
         let default = match &shown.default {
             Some(default) if is_value => format!("`{default}`"),
-            Some(default) => default.clone(),
-            None => String::new(),
+            default => default.clone().unwrap_or_default(),
         };
         table.row(&[&format!("`{}`", shown.term.trim()), &text, &default]);
     }
