@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::{Duration, Instant};
 
 use fc_codegen::target::FILE;
@@ -74,11 +74,9 @@ pub fn run(
         places.renew(&root, &spec)?;
         let now = Input::read(&root, &spec);
         if last.as_ref() != Some(&now) {
-            print::done(
-                &last
-                    .as_ref()
-                    .map_or_else(String::new, |last| now.since(last)),
-            )?;
+            if let Some(last) = &last {
+                print::done(&now.since(last))?;
+            }
             if let Err(failure) = work(&place) {
                 if print::is_closed_pipe(failure.as_ref()) {
                     return Err(failure);
@@ -102,13 +100,7 @@ fn wait(events: &Receiver<()>) {
         return;
     }
     let begin = Instant::now();
-    while begin.elapsed() < AT_MOST {
-        if let Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) =
-            events.recv_timeout(CALM)
-        {
-            return;
-        }
-    }
+    while begin.elapsed() < AT_MOST && events.recv_timeout(CALM).is_ok() {}
 }
 
 /// Returns the directory of the spec: the usual one while `fc.yaml` cannot be read.
