@@ -122,23 +122,14 @@ impl Shown {
         faults: &Faults,
         sources: &Sources,
     ) -> Result<(), Failure> {
-        let format = match self {
-            Self::Text => {
-                print::faults(faults, sources)?;
-                return Ok(());
-            }
-            Self::Json => Format::Json,
-            Self::Sarif => Format::Sarif,
-            Self::Github => Format::Github,
+        let below = || sources.below(&in_repository(&project.root));
+        let rendered = match self {
+            Self::Text => return Ok(print::faults(faults, sources)?),
+            Self::Json => render(faults, sources, Format::Json, lang()),
+            Self::Sarif => render(faults, &below(), Format::Sarif, lang()),
+            Self::Github => render(faults, &below(), Format::Github, lang()),
         };
-        let rendered = if self == Self::Json {
-            render(faults, sources, format, lang())
-        } else {
-            let prefix = in_repository(&project.root);
-            render(faults, &sources.below(&prefix), format, lang())
-        };
-        print::result(&rendered)?;
-        Ok(())
+        Ok(print::result(&rendered)?)
     }
 }
 
