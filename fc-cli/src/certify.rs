@@ -7,14 +7,14 @@ use fc_codegen::inspect::fingerprint;
 use fc_reflect::Reflector;
 use fc_spec::model::Effect;
 use fc_workshop::certify::{self, Certificate, Outcome, Settings, Trial};
-use fc_workshop::client::{Client, ClientError};
+use fc_workshop::client::Client;
 use fc_workshop::facts;
 use fc_workshop::run::{Interrupt, block_on};
 
 use crate::allow::Allowed;
 use crate::endpoint::{self, Ports, with_port};
 use crate::lang::{both, in_lang, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unanswered};
 use crate::output::Output;
 use crate::place::Place;
 use crate::print;
@@ -85,11 +85,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         Ok(Some(tested)) => tested,
         // Ctrl-C: an incomplete certificate is none.
         Ok(None) => return Ok(Status::Faulty),
-        Err(failure) if failure.is::<ClientError>() => {
-            print::failure(failure.as_ref());
-            return Ok(Status::Unanswered);
-        }
-        Err(failure) => return Err(failure),
+        Err(failure) => return unanswered(failure),
     };
     let certificate = Certificate {
         address,

@@ -4,8 +4,10 @@ use std::io;
 use std::path::Path;
 
 use fc_spec::diagnostic::{FaultCode, Faults};
+use fc_workshop::client::ClientError;
 
 use crate::lang::said;
+use crate::print;
 
 /// The outcome of a command. Its number is the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +54,15 @@ impl std::fmt::Display for Told {
 }
 
 impl std::error::Error for Told {}
+
+/// Shows that a robot has not answered. Returns other failures.
+pub fn unanswered(failure: Failure) -> Result<Status, Failure> {
+    if !failure.is::<ClientError>() {
+        return Err(failure);
+    }
+    print::failure(failure.as_ref());
+    Ok(Status::Unanswered)
+}
 
 /// Makes an error in reading a path the reason of a failure.
 pub fn unreadable(path: &Path) -> impl Fn(io::Error) -> Failure {

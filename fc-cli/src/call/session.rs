@@ -6,12 +6,12 @@ use fc_reflect::{Direction, Frame, Packing, Reflector};
 use fc_spec::model::{Kind, Operation, Side, Value};
 use fc_workshop::answer::{Outcome, Process, Progress};
 use fc_workshop::arguments::json;
-use fc_workshop::client::{Client, ClientError};
+use fc_workshop::client::Client;
 
 use super::{Request, show};
 use crate::endpoint::with_port;
 use crate::lang::said;
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unanswered};
 use crate::print;
 
 /// The largest number of times that are kept for the summary.
@@ -35,14 +35,7 @@ impl<'m> Call<'_, 'm> {
             let mut client = self.connect(request).await?;
             self.with(&mut client, request).await
         };
-        match each.await {
-            Ok(status) => Ok(status),
-            Err(failure) if failure.is::<ClientError>() => {
-                print::failure(failure.as_ref());
-                Ok(Status::Unanswered)
-            }
-            Err(failure) => Err(failure),
-        }
+        each.await.or_else(unanswered)
     }
 
     /// Connects to the port of a request.

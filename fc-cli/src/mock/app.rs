@@ -17,7 +17,7 @@ use crate::allow::{self, Allowed};
 use crate::call::show::{Format, summary};
 use crate::endpoint::{at_port, with_port};
 use crate::lang::{both, in_lang, lang, said};
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unanswered};
 use crate::print;
 use crate::recording::Shown;
 
@@ -91,26 +91,19 @@ pub fn run(
     block_on(async {
         let app = match App::connect(reflector, &settings).await {
             Ok(app) => app,
-            Err(error) => {
-                print::failure(Failure::from(error).as_ref());
-                return Ok(Status::Unanswered);
-            }
+            Err(error) => return unanswered(error.into()),
         };
         let steps = options.app.step.then(steps);
         let mut interrupt = Interrupt::new()?;
         let sink = &mut |event: Event<'_, '_>| show(reflector, options.app.format, &event);
         let deviations = app.run(&scenario, steps, sink, interrupt.next()).await?;
-        if !options.expect {
-            return Ok(Status::Fine);
-        }
-        if deviations == 0 {
+        if options.expect && deviations == 0 {
             print::done(&said!(
                 "机器人符合场景\n",
                 "the robot did what the scenario expects\n"
             ))?;
-            return Ok(Status::Fine);
         }
-        Ok(Status::Faulty)
+        Ok(Status::fine_if(!options.expect || deviations == 0))
     })?
 }
 
@@ -160,20 +153,14 @@ fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::
             ));
         }
         Event::Response(command, frame, took) => {
-            let direction = Direction::Response;
-            match reflector.message(Some(command), direction, &frame.data) {
-                Ok(message) => {
-                    let outcome = Outcome::of(reflector.model(), &message);
-                    let name = command.name.as_str();
-                    match shown {
-                        Shown::Json => {
-                            format.response(Some(name), frame, &outcome, &message, *took)
-                        }
-                        Shown::Text => summary(name, &outcome) + "\n",
-                    }
-                }
-                // A deviation follows.
-                Err(_) => return Ok(()),
+            let message = reflector.message(Some(command), Direction::Response, &frame.data);
+            // A deviation follows.
+            let Ok(message) = message else { return Ok(()) };
+            let outcome = Outcome::of(reflector.model(), &message);
+            let name = command.name.as_str();
+            match shown {
+                Shown::Json => format.response(Some(name), frame, &outcome, &message, *took),
+                Shown::Text => summary(name, &outcome) + "\n",
             }
         }
         Event::Pushed(frame) => match (frame.operation, shown) {
