@@ -76,13 +76,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let spec = Spec::read(place)?;
     let model = spec.valid()?;
     let ports = &model.transport.ports;
-    let faults = options.faults.iter();
-    let faults: Result<Vec<_>, _> = faults.map(|text| Fault::read(model, text)).collect();
+    let faults = options.faults.iter().map(|text| Fault::read(model, text));
     let data_port = options.to_data_port.unwrap_or(ports.data.number);
     let settings = Settings {
         commands: with_port(&options.to, ports.command.number),
         data: at_port(&options.to, data_port),
-        faults: faults?,
+        faults: faults.collect::<Result<_, _>>()?,
         seed: options.seed.unwrap_or_else(fc_workshop::fault::any_seed),
     };
     block_on(forward(model, options, &settings))?
@@ -154,27 +153,20 @@ fn show(model: &Model, format: Shown, event: &Event<'_, '_>) -> io::Result<()> {
     let line = match (event, format) {
         (Event::Record(record), Shown::Json) => decode::json(record),
         (Event::Record(record), Shown::Text) => decode::line(record, model, lang()),
-        (Event::Faults { flow, id, kinds }, Shown::Json) => {
+        (Event::Faults { flow, id, kinds }, format) => {
             let kinds: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
-            let line = json!({
-                "connection": flow.to_string(),
-                "code": format!("0x{:04X}", id.code),
-                "msg_id": id.id,
-                "faults": kinds,
-            });
-            line.to_string()
-        }
-        (Event::Faults { flow, id, kinds }, Shown::Text) => {
-            let kinds: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
-            let key = model.frame.field(HeaderRole::Id);
-            let key = key.map_or("id", |field| field.wire.as_str());
-            let parts = [
-                format!("  {} 0x{:04X}", both("故障", "fault"), id.code),
-                kinds.join(", "),
-                format!("{key} {}", id.id),
-                flow.to_string(),
-            ];
-            parts.join(" · ")
+            let code = format!("0x{:04X}", id.code);
+            let id = id.id;
+            if format == Shown::Json {
+                let flow = flow.to_string();
+                json!({ "connection": flow, "code": code, "msg_id": id, "faults": kinds })
+                    .to_string()
+            } else {
+                let (fault, kinds) = (both("故障", "fault"), kinds.join(", "));
+                let key = model.frame.field(HeaderRole::Id);
+                let key = key.map_or("id", |field| field.wire.as_str());
+                format!("  {fault} {code} · {kinds} · {key} {id} · {flow}")
+            }
         }
         (Event::Unreachable(address, error), _) => {
             let error = said!(
