@@ -10,7 +10,7 @@ use fc_spec::model::{Model, Text};
 use fc_spec::revision::{renumbered, without_waiver};
 use fc_spec::source::Sources;
 
-use crate::lang::{both, said};
+use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::project::{Project, slashed};
@@ -86,15 +86,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         (lang, file, section)
     });
     let sections: Vec<_> = sections.collect();
-    let mut text = String::new();
     if options.dry_run {
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "{} {number}",
-            print::good(&said!("将会发布", "would release"))
-        );
+        let would = print::good(&said!("将会发布", "would release"));
+        let mut text = format!("{would} {number}\n");
         for (path, diff) in &change.diffs {
+            // Writing to a String cannot fail.
             let _ = writeln!(text, "\n{path}\n{}", print::diff(diff).trim_end());
         }
         for (.., section) in &sections {
@@ -105,11 +101,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     }
     let mut written = write(&project, &shelf, &change.released, number, &sections)?;
     written.extend(project.write_changes(&spec.sources, &change.sources)?);
-    let _ = writeln!(
-        text,
-        "{} {number}",
-        print::good(&said!("已发布", "released"))
-    );
+    let released = print::good(&said!("已发布", "released"));
+    let mut text = format!("{released} {number}\n");
     for path in written {
         let _ = writeln!(text, "  {path}");
     }
@@ -192,15 +185,10 @@ fn changes(shelf: &Shelf, model: &Model, today: &str) -> Result<Option<Vec<Findi
 
 /// Prints the reasons why there is no release.
 fn refuse(number: &Number, objections: &[Objection], shelf: &Shelf) -> Result<Status, Failure> {
-    let mut text = String::new();
     for objection in objections {
-        text += &print::leveled(&said!(
-            "错误：{objection}\n",
-            "error: {objection}\n",
-            objection = objection.message()
-        ));
+        print::error(&in_lang(&objection.message()))?;
     }
-    text += &said!("{number} 没有发布", "{number} is not released");
+    let mut text = said!("{number} 没有发布", "{number} is not released");
     if let Some((last, _)) = shelf.releases.last() {
         text += &said!(
             "；`fcproto diff` 会列出自 {last} 以来的变更",

@@ -87,12 +87,10 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         return Ok(Status::Fine);
     }
     project.write_changes(&spec.sources, &after.sources)?;
-    print::done(
-        &(text
-            + &said!(
-                "\n运行 `fcproto generate`，把它从由规范生成的所有内容中去掉\n",
-                "\nrun `fcproto generate` to remove it from the generated files\n"
-            )),
-    )?;
+    text += &said!(
+        "\n运行 `fcproto generate`，把它从由规范生成的所有内容中去掉\n",
+        "\nrun `fcproto generate` to remove it from the generated files\n"
+    );
+    print::done(&text)?;
     Ok(Status::Fine)
 }
