@@ -58,18 +58,17 @@ pub enum Shown {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
-    let mut spec = Spec::in_project(&project);
+    let mut spec = Spec::read(place)?;
     if options.fix {
-        spec = fixed(&project, spec, options)?;
+        spec = fixed(spec, options)?;
     }
     if let Some(model) = &spec.model {
-        project.targets.check_audiences(model)?;
+        spec.project.targets.check_audiences(model)?;
     }
     options
         .output
         .format
-        .show(&project, &spec.faults, &spec.sources)?;
+        .show(&spec.project, &spec.faults, &spec.sources)?;
     if let (Shown::Text, Some(model)) = (options.output.format, &spec.model) {
         let files = counted(spec.files(), "文件", "file");
         let operations = counted(model.operations.len(), "接口", "operation");
@@ -84,7 +83,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 }
 
 /// Applies the certain fixes and returns the fixed spec. Writes the files, unless `--dry-run` only shows the changes.
-fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failure> {
+fn fixed(spec: Spec, options: &Options) -> Result<Spec, Failure> {
     let Some(fixed) = fix_all(&spec.sources, |sources| {
         spec.instead(sources.clone()).faults
     }) else {
@@ -102,7 +101,7 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
         print::result(&changes.collect::<String>())?;
         return Ok(spec);
     }
-    project.write_changes(&spec.sources, &fixed.sources)?;
+    spec.project.write_changes(&spec.sources, &fixed.sources)?;
     if options.output.format == Shown::Text {
         let good = print::good(&said!("已修改", "fixed"));
         let lines = fixed.done.iter().map(|it| {
@@ -111,7 +110,7 @@ fn fixed(project: &Project, spec: Spec, options: &Options) -> Result<Spec, Failu
         });
         print::done(&lines.collect::<String>())?;
     }
-    Ok(Spec::in_project(project))
+    Ok(Spec::in_project(spec.project))
 }
 
 impl Shown {

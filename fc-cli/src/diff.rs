@@ -87,7 +87,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     };
     let findings = shelf.compare(&old, &new, &today(options.today.as_deref()))?;
     if matches!(options.output.format, Shown::Github | Shown::Sarif) {
-        new.sources = new.sources.below(&in_repository(&shelf.root));
+        new.sources = new.sources.below(&in_repository(&shelf.project.root));
     }
     let lang = lang();
     print::result(&render(&findings, [&old, &new], format, lang))?;

@@ -80,7 +80,7 @@ fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
 /// Generates or checks the files of a project. Messages use `place` in commands for the user.
 pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<Status, Failure> {
     let released = match &options.as_of {
-        Some(release) => Some(Shelf::of(&project)?.released(release)?),
+        Some(release) => Some(Shelf::of(project.clone())?.released(release)?),
         None => None,
     };
     let text = match (&options.from, &released) {
@@ -92,12 +92,12 @@ pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<
         let name = path.display().to_string();
         return make(&dumped(&name, &text)?, &name, project, place, options);
     }
-    let spec = Spec::in_project(&project);
+    let spec = Spec::in_project(project);
     spec.show_faults()?;
     match &spec.model {
         Some(model) => {
             let read = counted(spec.files(), "文件", "file");
-            make(model, &read, project, place, options)
+            make(model, &read, spec.project, place, options)
         }
         None => Ok(spec.status()),
     }

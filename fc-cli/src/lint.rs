@@ -44,12 +44,12 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         options.output.format.show(&project, &wrong, &files)?;
         return Ok(Status::Failed);
     }
-    let spec = Spec::in_project(&project);
+    let spec = Spec::in_project(project);
     let Some(model) = &spec.model else {
         options
             .output
             .format
-            .show(&project, &spec.faults, &spec.sources)?;
+            .show(&spec.project, &spec.faults, &spec.sources)?;
         return Ok(spec.status());
     };
     let today = today(options.today.as_deref());
@@ -59,7 +59,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     options
         .output
         .format
-        .show(&project, &shown, &spec.sources)?;
+        .show(&spec.project, &shown, &spec.sources)?;
     if options.output.format == Shown::Text && shown.is_empty() {
         let waived = findings.iter().filter(|it| it.waived.is_some()).count();
         let waived = match waived {

@@ -8,7 +8,6 @@ use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
-use crate::project::Project;
 use crate::spec::Spec;
 
 /// Options of `fcproto new`.
@@ -67,8 +66,7 @@ pub fn code(text: &str) -> Result<u16, String> {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
-    let spec = Spec::in_project(&project);
+    let spec = Spec::read(place)?;
     let model = spec.valid()?;
     let new = scaffold(
         model,
@@ -92,7 +90,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let (name, objection) = (&options.name, after.objection());
         return Err(said!("加上 `{name}` 之后{objection}", "with `{name}` {objection}").into());
     }
-    replace_spec_file(&project.root, &new.path, &new.text)?;
+    replace_spec_file(&spec.project.root, &new.path, &new.text)?;
     let code = match new.code {
         Some(code) => said!("功能码 0x{code:04X}", "as 0x{code:04X}"),
         None => said!("没有功能码", "without a code"),

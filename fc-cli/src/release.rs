@@ -13,7 +13,7 @@ use fc_spec::source::Sources;
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::project::{Project, slashed};
+use crate::project::slashed;
 use crate::spec::Spec;
 use crate::versions::{Shelf, day, today};
 use crate::{input, print};
@@ -55,11 +55,10 @@ fn number(text: &str) -> Result<Number, String> {
 const CHANGELOGS: [(Lang, &str); 2] = [(Lang::Zh, "CHANGELOG.md"), (Lang::En, "CHANGELOG.en.md")];
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
-    let spec = Spec::in_project(&project);
+    let spec = Spec::read(place)?;
     let before = spec.valid()?;
     let number = &options.number;
-    let shelf = Shelf::of(&project)?;
+    let shelf = Shelf::of(spec.project.clone())?;
     let today = today(options.today.as_deref());
     let change = Change::to(number, &spec)?;
     let findings = changes(&shelf, &change.agreed, &today)?;
@@ -99,8 +98,8 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         print::result(&text)?;
         return Ok(Status::Fine);
     }
-    let mut written = write(&project, &shelf, &change.released, number, &sections)?;
-    written.extend(project.write_changes(&spec.sources, &change.sources)?);
+    let mut written = write(&shelf, &change.released, number, &sections)?;
+    written.extend(spec.project.write_changes(&spec.sources, &change.sources)?);
     let released = print::good(&said!("已发布", "released"));
     let mut text = format!("{released} {number}\n");
     for path in written {
@@ -201,21 +200,20 @@ fn refuse(number: &Number, objections: &[Objection], shelf: &Shelf) -> Result<St
 
 /// Writes the dump and the changelogs, and returns their paths.
 fn write(
-    project: &Project,
     shelf: &Shelf,
     model: &Model,
     number: &Number,
     sections: &[(Lang, &str, String)],
 ) -> Result<Vec<String>, Failure> {
     let path = slashed(&shelf.file(&file(number)));
-    replace_spec_file(&project.root, &path, &release_dump(model))?;
+    replace_spec_file(&shelf.project.root, &path, &release_dump(model))?;
     let mut written = vec![path];
     for (lang, name, section) in sections {
         let path = slashed(&shelf.file(&format!("{DIRECTORY}/{name}")));
-        let disk = project.root.join(&path);
+        let disk = shelf.project.root.join(&path);
         let before = input::file_if_there(&disk)?;
         let text = with_section(before.as_deref(), section, *lang);
-        replace_spec_file(&project.root, &path, &text)?;
+        replace_spec_file(&shelf.project.root, &path, &text)?;
         written.push(path);
     }
     Ok(written)

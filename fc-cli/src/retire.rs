@@ -9,7 +9,6 @@ use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
 use crate::print;
-use crate::project::Project;
 use crate::spec::Spec;
 
 /// Options of `fcproto retire`.
@@ -32,8 +31,7 @@ pub struct Options {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
-    let spec = Spec::in_project(&project);
+    let spec = Spec::read(place)?;
     let model = spec.valid()?;
     for (lang, option, reason) in [
         (Lang::Zh, "--zh", &options.zh),
@@ -86,7 +84,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         print::result(&(text + "\n"))?;
         return Ok(Status::Fine);
     }
-    project.write_changes(&spec.sources, &after.sources)?;
+    spec.project.write_changes(&spec.sources, &after.sources)?;
     text += &said!(
         "\n运行 `fcproto generate`，把它从由规范生成的所有内容中去掉\n",
         "\nrun `fcproto generate` to remove it from the generated files\n"

@@ -9,7 +9,6 @@ use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
 use crate::lang::{both, counted, in_lang, said};
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
-use crate::project::Project;
 use crate::spec::Spec;
 use crate::versions::today;
 use crate::{input, print};
@@ -133,8 +132,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 }
 
 pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
-    let mut spec = Spec::in_project(&project);
+    let mut spec = Spec::read(place)?;
     let model = spec.valid()?;
     let before = spec.sources.clone();
     let said = options.said(model)?;
@@ -159,7 +157,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         spec = after;
     }
     if !options.dry_run {
-        project.write_changes(&before, &spec.sources)?;
+        spec.project.write_changes(&before, &spec.sources)?;
     }
     let what = if options.dry_run {
         said!("将写下答复", "would settle")

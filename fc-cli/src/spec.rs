@@ -1,6 +1,6 @@
 //! Reads the spec and shows its diagnostics.
 
-use fc_codegen::check::{Requirements, check};
+use fc_codegen::check::check;
 use fc_spec::diagnostic::{Faults, Severity};
 use fc_spec::model::{Languages, Model};
 use fc_spec::source::Sources;
@@ -15,43 +15,44 @@ use crate::project::Project;
 
 /// A spec that has been read and checked.
 pub struct Spec {
+    /// The project of the spec.
+    pub project: Project,
     /// The files.
     pub sources: Sources,
     /// The diagnostics, in the order of the files.
     pub faults: Faults,
     /// The model, or `None` if the spec has errors.
     pub model: Option<Model>,
-    /// The requirements of the project.
-    requirements: Requirements,
 }
 
 impl Spec {
     /// Finds the project, then reads and checks its spec.
     pub fn read(place: &Place) -> Result<Self, Failure> {
-        Ok(Self::in_project(&Project::find(place)?))
+        Ok(Self::in_project(Project::find(place)?))
     }
 
     /// Reads and checks the spec of a project.
-    pub fn in_project(project: &Project) -> Self {
+    pub fn in_project(project: Project) -> Self {
         progress::doing(both("正在检查规范", "checking the spec"));
         let mut faults = Faults::new();
         let sources = read_dir(&project.root, &project.spec, &mut faults);
-        Self::of(sources, faults, project.targets.requirements())
+        Self::of(project, sources, faults)
     }
 
-    fn of(sources: Sources, mut faults: Faults, requirements: Requirements) -> Self {
+    fn of(project: Project, sources: Sources, mut faults: Faults) -> Self {
+        let requirements = project.targets.requirements();
         let model = check(&sources, &requirements, &mut faults).model();
         Self {
+            project,
             sources,
             faults,
             model,
-            requirements,
         }
     }
 
     /// Returns the languages in which each text is required.
     pub fn texts(&self) -> Languages {
-        self.requirements.texts
+        self.project.targets.texts
     }
 
     /// Checks the spec with another text in one of its files.
@@ -63,9 +64,9 @@ impl Spec {
         self.instead(Sources::from_texts(texts))
     }
 
-    /// Checks other files with the same requirements.
+    /// Checks other files as those of the project.
     pub fn instead(&self, sources: Sources) -> Self {
-        Self::of(sources, Faults::new(), self.requirements.clone())
+        Self::of(self.project.clone(), sources, Faults::new())
     }
 
     /// Returns the errors without their places. They are the reason why a changed spec is not written.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fc_codegen::target::Targets;
 use fc_diff::release::{Number, Releases};
 use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gone_early, waive};
 use fc_spec::diagnostic::{Format, render};
@@ -30,42 +31,32 @@ pub struct Named {
 
 /// The places to look for versions.
 pub struct Shelf {
-    /// The project's directory.
-    pub root: PathBuf,
-    /// The directory of the spec, relative to `root`.
-    pub spec: PathBuf,
+    /// The project, or the current directory without one.
+    pub project: Project,
     /// The releases of the spec.
     pub releases: Releases,
-    /// The settings of the project's packages.
-    packages: Packages,
 }
 
 impl Shelf {
     /// Returns the shelf of a project.
-    pub fn of(project: &Project) -> Result<Self, Failure> {
-        let packages = packages(project);
-        Self::at(project.root.clone(), project.spec.clone(), packages)
+    pub fn of(project: Project) -> Result<Self, Failure> {
+        let home = project.root.join(&project.spec);
+        let directory = home.join(fc_diff::release::DIRECTORY);
+        let releases = Releases::beside(&home).map_err(unreadable(&directory))?;
+        Ok(Self { project, releases })
     }
 
     /// Returns the shelf of the project. Without a project, uses the current directory if `is_needed` is `false`.
     pub fn find(place: &Place, is_needed: bool) -> Result<Self, Failure> {
         match Project::find(place) {
-            Ok(project) => Self::of(&project),
+            Ok(project) => Self::of(project),
             Err(error) if is_needed => Err(error),
-            Err(_) => Self::at(".".into(), "spec".into(), Packages::default()),
+            Err(_) => Self::of(Project {
+                root: ".".into(),
+                spec: "spec".into(),
+                targets: Targets::default(),
+            }),
         }
-    }
-
-    fn at(root: PathBuf, spec: PathBuf, packages: Packages) -> Result<Self, Failure> {
-        let home = root.join(&spec);
-        let directory = home.join(fc_diff::release::DIRECTORY);
-        let releases = Releases::beside(&home).map_err(unreadable(&directory))?;
-        Ok(Self {
-            root,
-            spec,
-            releases,
-            packages,
-        })
     }
 
     /// Reads the versions of a command line. Shows the errors of both specs if one has any.
@@ -108,7 +99,7 @@ impl Shelf {
 
     /// Returns the name of the working tree.
     pub fn here(&self) -> String {
-        self.root.display().to_string()
+        self.project.root.display().to_string()
     }
 
     /// Reads a version. Shows the errors of its spec and returns `None` if it has any.
@@ -117,7 +108,7 @@ impl Shelf {
             "正在读取规范的两个版本",
             "reading two versions of the spec",
         ));
-        match Version::read(name, &self.root, &self.spec) {
+        match Version::read(name, &self.project.root, &self.project.spec) {
             Ok(version) => Ok(Some(version)),
             Err(VersionError::Faulty {
                 name,
@@ -145,7 +136,7 @@ impl Shelf {
         progress::doing(both("正在比较", "comparing"));
         let earlier = self.earlier(old, new)?;
         let earlier = earlier.iter().map(|it| (it.name.as_str(), &it.model));
-        let mut findings = diff_since(earlier, &old.model, &new.model, self.packages);
+        let mut findings = diff_since(earlier, &old.model, &new.model, packages(&self.project));
         findings.extend(gone_early(&old.model, &new.model, today));
         let last = self.releases.last().map(|(number, _)| number.to_string());
         let since_release = last.as_ref() == Some(&old.name) && new.name == self.here();
@@ -167,21 +158,14 @@ impl Shelf {
         };
         let bounds = [number(&old.name), number(&new.name)];
         let is_before = |it: &&Number| bounds.into_iter().flatten().all(|bound| *it < bound);
-        let mut names: Vec<String> = self
-            .releases
-            .numbers()
-            .filter(is_before)
-            .map(ToString::to_string)
-            .collect();
-        names.reverse();
-        let read = |name: &String| self.read(name);
-        let versions = names.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-        Ok(versions.into_iter().flatten().collect())
+        let earlier = self.releases.numbers().rev().filter(is_before);
+        let versions = earlier.map(|number| self.read(&number.to_string()));
+        versions.filter_map(Result::transpose).collect()
     }
 
     /// Returns the path of a file of the spec, relative to the root.
     pub fn file(&self, path: &str) -> PathBuf {
-        Path::new(&self.spec).join(path)
+        self.project.spec.join(path)
     }
 }
 

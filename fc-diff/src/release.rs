@@ -160,7 +160,8 @@ impl Releases {
     }
 
     /// Returns the numbers, from the first to the last.
-    pub fn numbers(&self) -> impl Iterator<Item = &Number> {
+    #[must_use]
+    pub fn numbers(&self) -> impl DoubleEndedIterator<Item = &Number> {
         self.0.iter().map(|(number, _)| number)
     }
 }

@@ -140,7 +140,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     let names = languages.iter().map(|it| it.name().to_owned()).collect();
     let checking = generate::Options::checking(names);
     let status = generate::in_project(project.clone(), place, &checking)?;
-    let spec = Spec::in_project(&project);
+    let spec = Spec::in_project(project.clone());
     let Some(model) = spec.model.filter(|_| status == Status::Fine) else {
         return Ok(status);
     };
@@ -215,7 +215,7 @@ fn pack(
 /// Returns the edition of a package: the release of the spec if it has the same content as the working tree.
 fn edition(project: &Project, model: &Model, audience: Option<&str>) -> Result<Edition, Failure> {
     let here = fingerprint(&*part(model, audience)?);
-    let shelf = Shelf::of(project)?;
+    let shelf = Shelf::of(project.clone())?;
     let number = &model.protocol.version;
     if let Some(dump) = shelf.releases.named(number) {
         let released = generate::dumped(&dump.display().to_string(), &input::file(dump)?)?;
