@@ -5,7 +5,7 @@ use std::time::{Duration, SystemTime};
 
 use fc_codegen::inspect::fingerprint;
 use fc_reflect::Reflector;
-use fc_spec::model::Effect;
+use fc_spec::model::{Effect, Model};
 use fc_workshop::certify::{self, Certificate, Outcome, Settings, Trial};
 use fc_workshop::client::Client;
 use fc_workshop::facts;
@@ -16,10 +16,8 @@ use crate::endpoint::{self, Ports, with_port};
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status, unanswered};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
 use crate::recording::Shown;
-use crate::spec::Spec;
 
 /// Options of `fcproto certify`.
 #[derive(Debug, clap::Args)]
@@ -72,9 +70,7 @@ pub struct Options {
     output: Output<Shown>,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let reflector = &Reflector::new(model);
     let start = SystemTime::now();
     let tested = match &options.robot {

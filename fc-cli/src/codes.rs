@@ -2,13 +2,12 @@
 
 use clap::ValueEnum;
 use fc_codegen::codes::CodeMap;
+use fc_spec::model::Model;
 
 use crate::lang::{both, lang};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
-use crate::spec::Spec;
 
 /// Options of `fcproto codes`.
 #[derive(Debug, clap::Args)]
@@ -37,9 +36,7 @@ enum Shown {
     Json,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let map = CodeMap::new(model);
     let lang = lang();
     print::result(&match options.format {

@@ -13,9 +13,7 @@ use crate::lang::{both, lang, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::recording::{Recording, Shown};
-use crate::spec::Spec;
 
 /// Options of `fcproto decode`.
 #[derive(Debug, clap::Args)]
@@ -65,9 +63,7 @@ enum Only {
     Errors,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let filter = Filter::new(model, options)?;
     let reflector = Reflector::new(model);
     let mut printer = Printer {

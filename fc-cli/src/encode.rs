@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use clap_complete::ArgValueCompleter;
 use fc_reflect::sample::Profile;
 use fc_reflect::{Direction, Error, Packing, Reflector};
-use fc_spec::model::Kind;
+use fc_spec::model::{Kind, Model};
 use fc_workshop::arguments::Arguments;
 use fc_workshop::decode::hex;
 
@@ -14,9 +14,7 @@ use crate::call::read_json;
 use crate::complete;
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
-use crate::spec::Spec;
 
 /// The gzip level of a compressed frame.
 const LEVEL: u8 = 6;
@@ -79,9 +77,7 @@ impl From<Side> for Direction {
     }
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let reflector = Reflector::new(model);
     let name = &options.name;
     let Some(operation) = model.operation(name) else {

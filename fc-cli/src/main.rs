@@ -60,6 +60,7 @@ use clap_complete::CompleteEnv;
 
 use args::{Args, Command};
 use outcome::{Failure, Status, Told};
+use spec::Spec;
 
 fn main() -> ExitCode {
     lang::speak(std::env::args_os().skip(1));
@@ -86,39 +87,40 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<Status, Failure> {
+    let place = &args.place;
     match &args.command {
-        Command::Check(options) => check::run(&args.place, options),
+        Command::Check(options) => check::run(place, options),
         Command::Explain(options) => explain::run(options),
-        Command::Lint(options) => lint::run(&args.place, options),
-        Command::Fmt(options) => fmt::run(&args.place, options),
-        Command::Init(options) => init::run(&args.place, options),
-        Command::New(options) => new::run(&args.place, options),
-        Command::Generate(options) => generate::run(&args.place, options),
-        Command::Package(options) => package::run(&args.place, options),
-        Command::Inspect(options) => inspect::run(&args.place, options),
-        Command::Where(options) => places::run(&args.place, options),
-        Command::Questions(options) => questions::run(&args.place, options),
-        Command::Settle(options) => settle::run(&args.place, options),
-        Command::Diff(options) => diff::run(&args.place, options),
-        Command::Changelog(options) => changelog::run(&args.place, options),
-        Command::Release(options) => release::run(&args.place, options),
-        Command::Codes(options) => codes::run(&args.place, options),
-        Command::Decode(options) => decode::run(&args.place, options),
-        Command::Drift(options) => drift::run(&args.place, options),
-        Command::Encode(options) => encode::run(&args.place, options),
-        Command::Retire(options) => retire::run(&args.place, options),
-        Command::Call(options) => call::run(&args.place, options),
-        Command::Mock(options) => mock::run(&args.place, options),
-        Command::Certify(options) => certify::run(&args.place, options),
+        Command::Lint(options) => lint::run(place, options),
+        Command::Fmt(options) => fmt::run(place, options),
+        Command::Init(options) => init::run(place, options),
+        Command::New(options) => new::run(place, options),
+        Command::Generate(options) => generate::run(place, options),
+        Command::Package(options) => package::run(place, options),
+        Command::Inspect(options) => inspect::run(place, options),
+        Command::Where(options) => places::run(place, options),
+        Command::Questions(options) => questions::run(Spec::read(place)?.valid()?, options),
+        Command::Settle(options) => settle::run(place, options),
+        Command::Diff(options) => diff::run(place, options),
+        Command::Changelog(options) => changelog::run(place, options),
+        Command::Release(options) => release::run(place, options),
+        Command::Codes(options) => codes::run(Spec::read(place)?.valid()?, options),
+        Command::Decode(options) => decode::run(Spec::read(place)?.valid()?, options),
+        Command::Drift(options) => drift::run(place, options),
+        Command::Encode(options) => encode::run(Spec::read(place)?.valid()?, options),
+        Command::Retire(options) => retire::run(place, options),
+        Command::Call(options) => call::run(Spec::read(place)?.valid()?, options),
+        Command::Mock(options) => mock::run(Spec::read(place)?.valid()?, options),
+        Command::Certify(options) => certify::run(Spec::read(place)?.valid()?, options),
         #[cfg(feature = "record")]
-        Command::Record(options) => record::run(&args.place, options),
-        Command::Proxy(options) => proxy::run(&args.place, options),
-        Command::Lsp(options) => lsp::run(&args.place, options),
+        Command::Record(options) => record::run(Spec::read(place)?.valid()?, options),
+        Command::Proxy(options) => proxy::run(Spec::read(place)?.valid()?, options),
+        Command::Lsp(options) => lsp::run(place, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),
-        Command::Git(options) => git::run(&args.place, options),
-        Command::GitDiff(options) => git::diff::run(&args.place, options),
-        Command::Schema(options) => schema::run(&args.place, options),
+        Command::Git(options) => git::run(place, options),
+        Command::GitDiff(options) => git::diff::run(place, options),
+        Command::Schema(options) => schema::run(place, options),
         Command::HelpPage => help::page(),
     }
 }

@@ -19,10 +19,8 @@ use crate::endpoint::{self, Ports, at_port, with_port};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
 use crate::recording::Shown;
-use crate::spec::Spec;
 
 /// Options of `fcproto proxy`.
 #[derive(Debug, clap::Args)]
@@ -72,9 +70,7 @@ pub struct Options {
     output: Output<Shown>,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let ports = &model.transport.ports;
     let faults = options.faults.iter().map(|text| Fault::read(model, text));
     let data_port = options.to_data_port.unwrap_or(ports.data.number);

@@ -2,14 +2,12 @@
 
 use clap::ValueEnum;
 use fc_codegen::questions::{By, List};
-use fc_spec::model::{AnswerKind, Question, Text};
+use fc_spec::model::{AnswerKind, Model, Question, Text};
 
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
-use crate::spec::Spec;
 
 /// Options of `fcproto questions`.
 #[derive(Debug, clap::Args)]
@@ -81,9 +79,7 @@ enum Shown {
     Csv,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     if let Some(id) = &options.group
         && model.group(id).is_none()
     {

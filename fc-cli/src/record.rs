@@ -11,10 +11,8 @@ use fc_workshop::recording::{Origin, Recorder};
 
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status, unwritable};
-use crate::place::Place;
 use crate::print;
 use crate::recording::Recording;
-use crate::spec::Spec;
 
 /// Options of `fcproto record`.
 #[derive(Debug, clap::Args)]
@@ -40,9 +38,7 @@ pub fn recorder<'m>(model: &'m Model, path: &Path) -> Result<Recorder<'m, File>,
     Ok(Recorder::new(model, file, &origin)?)
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let mut recorder = recorder(model, &options.out)?;
     let mut frames = 0_usize;
     let reflector = Reflector::new(model);

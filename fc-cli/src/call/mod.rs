@@ -22,9 +22,7 @@ use crate::lang::{both, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
-use crate::spec::Spec;
 
 /// Longest silence of a process that `--follow` waits for, in seconds.
 const FOLLOW: &str = "300";
@@ -130,9 +128,7 @@ struct Request<'m> {
     data: Vec<u8>,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let reflector = Reflector::new(model);
     if options.interactive {
         return interactive::run(&reflector, options);

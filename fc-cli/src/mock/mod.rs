@@ -20,10 +20,8 @@ use crate::endpoint::{self, Ports};
 use crate::input;
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::recording::read_file;
-use crate::spec::Spec;
 
 /// Options of `fcproto mock`.
 #[derive(Debug, clap::Args)]
@@ -97,9 +95,7 @@ enum Side {
     App,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
-    let model = spec.valid()?;
+pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let reflector = Reflector::new(model);
     let scenario = match (&options.scenario, &options.replay) {
         (None, Some(file)) => Some(recorded(&reflector, file)?),
