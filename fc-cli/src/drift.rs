@@ -8,7 +8,6 @@ use fc_workshop::drift::{self, Deviation, Drift, Report};
 use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
 use crate::recording::{Recording, Shown};
 use crate::spec::Spec;
@@ -27,8 +26,7 @@ pub struct Options {
     suggest: bool,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
+pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     let model = spec.valid()?;
     let reflector = Reflector::new(model);
     let mut found = Drift::new(model);
@@ -38,7 +36,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     })?;
     let report = found.finish();
     for deviation in &report.deviations {
-        show(&spec, options, deviation)?;
+        show(spec, options, deviation)?;
     }
     if options.output.format == Shown::Text {
         print::done(&summary(&report))?;

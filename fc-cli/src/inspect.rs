@@ -5,7 +5,6 @@ use fc_codegen::target::part;
 
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::spec::Spec;
 
@@ -36,8 +35,7 @@ enum Shown {
     Yaml,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
+pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     spec.show_faults()?;
     if let Some(model) = &spec.model {
         let part = part(model, options.audience.as_deref())?;

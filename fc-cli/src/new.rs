@@ -6,7 +6,6 @@ use fc_spec::scaffold::{NewOperation, scaffold};
 
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::spec::Spec;
 
@@ -65,8 +64,7 @@ pub fn code(text: &str) -> Result<u16, String> {
     })
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
+pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     let model = spec.valid()?;
     let new = scaffold(
         model,

@@ -12,7 +12,6 @@ use fc_spec::source::Sources;
 
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::project::slashed;
 use crate::spec::Spec;
 use crate::versions::{Shelf, day, today};
@@ -54,13 +53,12 @@ fn number(text: &str) -> Result<Number, String> {
 /// A language and the file with its changelog.
 const CHANGELOGS: [(Lang, &str); 2] = [(Lang::Zh, "CHANGELOG.md"), (Lang::En, "CHANGELOG.en.md")];
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
+pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     let before = spec.valid()?;
     let number = &options.number;
     let shelf = Shelf::of(spec.project.clone())?;
     let today = today(options.today.as_deref());
-    let change = Change::to(number, &spec)?;
+    let change = Change::to(number, spec)?;
     let findings = changes(&shelf, &change.agreed, &today)?;
     let mut objections = match (shelf.releases.last(), &findings) {
         (Some((last, _)), Some(findings)) => objections(last, number, findings),

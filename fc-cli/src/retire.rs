@@ -7,7 +7,6 @@ use fc_spec::retire::retire;
 
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::spec::Spec;
 
@@ -30,8 +29,7 @@ pub struct Options {
     dry_run: bool,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let spec = Spec::read(place)?;
+pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     let model = spec.valid()?;
     for (lang, option, reason) in [
         (Lang::Zh, "--zh", &options.zh),

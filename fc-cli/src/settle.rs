@@ -8,7 +8,6 @@ use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
 
 use crate::lang::{both, counted, in_lang, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::spec::Spec;
 use crate::versions::today;
 use crate::{input, print};
@@ -131,8 +130,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let mut spec = Spec::read(place)?;
+pub fn run(mut spec: Spec, options: &Options) -> Result<Status, Failure> {
     let model = spec.valid()?;
     let before = spec.sources.clone();
     let said = options.said(model)?;
