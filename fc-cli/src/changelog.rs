@@ -41,10 +41,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
 
 /// Returns both versions without the parts for other audiences. A version that does not know the audience stays whole.
 fn of_audience(old: Version, new: Version, audience: &str) -> Result<(Version, Version), Failure> {
-    let (one, other) = (
-        old.model.for_audience(audience),
-        new.model.for_audience(audience),
-    );
+    let [one, other] = [&old, &new].map(|it| it.model.for_audience(audience));
     if let (Err(_), Err(unknown)) = (&one, &other) {
         return Err(unknown.to_string().into());
     }

@@ -79,17 +79,15 @@ fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
 
 /// Generates or checks the files of a project. Messages use `place` in commands for the user.
 pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<Status, Failure> {
-    let released = match &options.as_of {
-        Some(release) => Some(Shelf::of(project.clone())?.released(release)?),
-        None => None,
+    let dump = if let Some(path) = &options.from {
+        Some((path.display().to_string(), input::text(path)?))
+    } else if let Some(release) = &options.as_of {
+        let path = Shelf::of(project.clone())?.released(release)?;
+        Some((path.display().to_string(), input::file(&path)?))
+    } else {
+        None
     };
-    let text = match (&options.from, &released) {
-        (Some(path), _) => Some((path, input::text(path)?)),
-        (None, Some(path)) => Some((path, input::file(path)?)),
-        (None, None) => None,
-    };
-    if let Some((path, text)) = text {
-        let name = path.display().to_string();
+    if let Some((name, text)) = dump {
         return make(&dumped(&name, &text)?, &name, project, place, options);
     }
     let spec = Spec::in_project(project);

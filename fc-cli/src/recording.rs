@@ -88,13 +88,8 @@ impl Recording {
         sink: &mut dyn FnMut(&Record<'m>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         crate::progress::done();
-        let input = Path::new("-").to_owned();
-        let files = if self.files.is_empty() {
-            &[input]
-        } else {
-            self.files.as_slice()
-        };
-        for file in files {
+        let stdin = self.files.is_empty().then(|| Path::new("-"));
+        for file in self.files.iter().map(PathBuf::as_path).chain(stdin) {
             let format = self.input.map(Into::into);
             read_file(reflector, file, format, &self.ports, sink)?;
         }
