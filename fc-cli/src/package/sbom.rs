@@ -33,7 +33,7 @@ pub struct Component {
 }
 
 impl Component {
-    /// Returns a component of which only the type and the name are known.
+    /// Returns a component with only a type and a name.
     pub fn new(kind: &'static str, name: impl Into<String>) -> Self {
         Self {
             kind,
