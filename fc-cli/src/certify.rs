@@ -1,5 +1,6 @@
 //! `fcproto certify`.
 
+use std::fs;
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
@@ -14,7 +15,7 @@ use fc_workshop::run::{Interrupt, block_on};
 use crate::allow::Allowed;
 use crate::endpoint::{self, Ports, with_port};
 use crate::lang::{both, in_lang, said};
-use crate::outcome::{Failure, Status, unanswered};
+use crate::outcome::{Failure, Status, unanswered, unwritable};
 use crate::output::Output;
 use crate::print;
 use crate::recording::Shown;
@@ -95,12 +96,13 @@ pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
         trials,
     };
     if let Some(folder) = &options.out {
-        std::fs::create_dir_all(folder)?;
-        std::fs::write(
-            folder.join("certificate.html"),
-            certify::html(&certificate)?,
-        )?;
-        std::fs::write(folder.join("certificate.json"), certify::json(&certificate))?;
+        let page = certify::html(&certificate)?;
+        let files = [("html", page), ("json", certify::json(&certificate))];
+        fs::create_dir_all(folder).map_err(unwritable(folder))?;
+        for (extension, text) in files {
+            let path = folder.join("certificate").with_extension(extension);
+            fs::write(&path, text).map_err(unwritable(&path))?;
+        }
     }
     let [passed, failed, skipped] = certificate.counts();
     if options.output.format == Shown::Text {

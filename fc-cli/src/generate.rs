@@ -255,7 +255,7 @@ fn command(place: &Place, options: &Options) -> String {
     ];
     let mut command = "fcproto generate".to_owned();
     for (option, value) in options {
-        command.extend(value.map(|value| format!(" {option} {value}")));
+        command.extend(value.map(|value| format!(" {option} {}", shell_words::quote(&value))));
     }
     command
 }

@@ -8,6 +8,7 @@ use lsp_server::Connection;
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
 use crate::place::Place;
+use crate::print;
 use crate::project::Project;
 use crate::versions::today;
 
@@ -37,8 +38,8 @@ struct Here<'p> {
 
 impl Host for Here<'_> {
     fn find(&self, directory: &Path) -> Result<fc_lsp::Project, String> {
-        let project =
-            Project::find_from(self.place, directory).map_err(|error| error.to_string())?;
+        let project = Project::find_from(self.place, directory);
+        let project = project.map_err(|failure| print::words(failure.as_ref()))?;
         // Clients name files by absolute paths, independent of the server's directory.
         let root = std::path::absolute(&project.root).map_err(|error| error.to_string())?;
         Ok(fc_lsp::Project::new(root, project.spec, project.targets))

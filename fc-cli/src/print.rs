@@ -85,7 +85,7 @@ pub fn error(text: &str) -> io::Result<()> {
 }
 
 /// Returns the reason in the language of this run. Errors of libraries are in English only.
-fn words(failure: &(dyn Error + 'static)) -> String {
+pub fn words(failure: &(dyn Error + 'static)) -> String {
     macro_rules! of {
         ($($Known:ty),+) => {
             $(if let Some(error) = failure.downcast_ref::<$Known>() {

@@ -145,7 +145,12 @@ impl Change {
             let after = spec.instead(sources.clone());
             let objection = after.objection();
             let model = after.model;
-            model.ok_or_else(|| format!("as {number} {objection}"))
+            model.ok_or_else(|| {
+                said!(
+                    "版本改为 {number} 后，{objection}",
+                    "as {number} {objection}"
+                )
+            })
         };
         let agreed = sound(&renumbered.sources)?;
         let (mut sources, mut left) = (renumbered.sources, Vec::new());

@@ -5,6 +5,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
+use clap::parser::ValueSource;
 use clap::{Args as _, FromArgMatches as _};
 use fc_reflect::{Frame, Reflector};
 use fc_spec::model::{Kind, Model};
@@ -21,12 +22,16 @@ use rustyline::{Config, Context, Editor, ExternalPrinter, Helper};
 
 use super::session::Call;
 use super::{Options, call, request, show};
+use crate::help::usage;
 use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::{print, progress};
 
 /// A wait without an end, for reports.
 const ALWAYS: Duration = Duration::from_secs(u64::MAX >> 32);
+
+/// Options that count for all lines.
+const OF_THE_RUN: [&str; 3] = ["to", "format", "interactive"];
 
 /// Reads calls until the end of the input. Returns the status of the last call that was no success.
 pub fn run(reflector: &Reflector<'_>, options: &Options) -> Result<Status, Failure> {
@@ -154,11 +159,27 @@ impl Talk<'_, '_> {
         let matches = match command.try_get_matches_from(words) {
             Ok(matches) => matches,
             Err(error) => {
-                print::message(&error.to_string())?;
+                let text = usage::described(&error);
+                print::message(&text.unwrap_or_else(|| error.to_string()))?;
                 return Ok(Status::Failed);
             }
         };
+        let is_given = |id: &&&str| matches.value_source(id) == Some(ValueSource::CommandLine);
+        if let Some(id) = OF_THE_RUN.iter().find(is_given) {
+            return Err(said!(
+                "`--{id}` 只能写在启动 `fcproto call` 的命令行里",
+                "`--{id}` belongs on the command line that starts `fcproto call`"
+            )
+            .into());
+        }
         let line = Options::from_arg_matches(&matches)?;
+        if line.json.as_deref() == Some("@-") {
+            return Err(said!(
+                "标准输入已用来读取指令；请把 JSON 写入文件，用 `--json @文件`",
+                "the standard input has the calls; write the JSON into a file and use `--json @FILE`"
+            )
+            .into());
+        }
         if line.list {
             let is_json = self.options.output.format == super::Shown::Json;
             print::result(&show::list(self.reflector.model(), is_json))?;
@@ -168,6 +189,7 @@ impl Talk<'_, '_> {
         let outer = call(self.reflector, self.options);
         let call = Call {
             repeat: line.repeat,
+            timeout: line.timeout.map_or(outer.timeout, Duration::from_millis),
             follow: line.follow.map(Duration::from_secs),
             ..outer
         };

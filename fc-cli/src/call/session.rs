@@ -6,7 +6,8 @@ use fc_reflect::{Direction, Frame, Packing, Reflector};
 use fc_spec::model::{Kind, Operation, Side, Value};
 use fc_workshop::answer::{Outcome, Process, Progress};
 use fc_workshop::arguments::json;
-use fc_workshop::client::Client;
+use fc_workshop::client::{Client, ClientError};
+use tokio::time::timeout;
 
 use super::{Request, show};
 use crate::endpoint::with_port;
@@ -120,13 +121,19 @@ impl<'m> Call<'_, 'm> {
         silence: Duration,
     ) -> Result<Status, Failure> {
         loop {
-            let frame = client.report(silence).await?;
-            let Some(operation) = frame.operation else {
-                continue;
-            };
-            let Some(progress) = process.progress(operation, &value(&frame.data)) else {
-                continue;
-            };
+            // Reports of other processes do not prolong the silence.
+            let next = within(silence, async {
+                loop {
+                    let frame = client.report(silence).await?;
+                    let Some(operation) = frame.operation else {
+                        continue;
+                    };
+                    if let Some(progress) = process.progress(operation, &value(&frame.data)) {
+                        return Ok((frame, operation, progress));
+                    }
+                }
+            });
+            let (frame, operation, progress) = next.await?;
             self.show_pushed(operation, &frame)?;
             match progress {
                 Progress::Running => {}
@@ -153,13 +160,16 @@ impl<'m> Call<'_, 'm> {
             return Ok(Status::Fine);
         }
         for _ in 0..self.repeat {
-            let frame = loop {
-                let frame = client.stream_frame(self.timeout).await?;
-                if frame.id.code == request.code {
-                    break frame;
+            // Frames of other streams do not prolong the timeout.
+            let next = within(self.timeout, async {
+                loop {
+                    let frame = client.stream_frame(self.timeout).await?;
+                    if frame.id.code == request.code {
+                        return Ok(frame);
+                    }
                 }
-            };
-            self.show_pushed(operation, &frame)?;
+            });
+            self.show_pushed(operation, &next.await?)?;
         }
         Ok(Status::Fine)
     }
@@ -173,6 +183,15 @@ impl<'m> Call<'_, 'm> {
         let message = (self.reflector).message(Some(operation), frame.id.direction, &frame.data);
         self.shown.pushed(operation, frame, message.as_ref().ok())
     }
+}
+
+/// Waits for a frame. Its absence within the time is silence.
+async fn within<T>(
+    time: Duration,
+    frame: impl Future<Output = Result<T, ClientError>>,
+) -> Result<T, ClientError> {
+    let arrived = timeout(time, frame).await;
+    arrived.unwrap_or(Err(ClientError::Silence(time)))
 }
 
 /// Reads a message that is only compared. Other data is null.

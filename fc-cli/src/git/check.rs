@@ -53,9 +53,10 @@ impl Staged {
     fn of(project: &Project) -> Result<Self, Failure> {
         let root = &project.root;
         let top = PathBuf::from(git_line(root, &["rev-parse", "--show-toplevel"])?);
+        let prefix = git_line(root, &["rev-parse", "--show-prefix"])?;
         let staged = Self {
             directory: temporary()?,
-            prefix: git_line(root, &["rev-parse", "--show-prefix"])?,
+            prefix,
         };
         // The tree of the next commit. It leaves out files that are only intended to be added.
         let tree = git_line(&top, &["write-tree"])?;

@@ -34,7 +34,7 @@ fn help_of_command(error: &Error) -> Option<Error> {
 }
 
 /// Returns the text of a usage error. Returns `None` for help, the version and unknown errors.
-fn described(error: &Error) -> Option<String> {
+pub fn described(error: &Error) -> Option<String> {
     let message = message(error)?;
     let line = said!("错误：{message}\n", "error: {message}\n");
     let mut text = print::leveled(&line);

@@ -220,7 +220,8 @@ fn lines_of_a_pipe_are_calls() {
     .spawn()
     .expect("the command can be run");
     let lines = format!(
-        "get_level\n\nprobe\nprobe --allow motion\nlower\n{SET_LEVEL} --follow\n--nothing\nlabel='\n--list\n"
+        "get_level\n\nprobe\nprobe --allow motion\nlower\n{SET_LEVEL} --follow\n--nothing\nlabel='\n\
+         get_level --to elsewhere\nset_level --json @-\n--list\n"
     );
     let mut stdin = run.stdin.take().expect("its input");
     stdin.write_all(lines.as_bytes()).expect("it reads");
@@ -237,8 +238,10 @@ fn lines_of_a_pipe_are_calls() {
     for part in [
         "effect `unknown`",
         "there is no command `lower`",
-        "--nothing",
+        "unexpected argument `--nothing`",
         "a quotation mark is not closed",
+        "`--to` belongs on the command line",
+        "the standard input has the calls",
     ] {
         assert!(run.stderr.contains(part), "{part}: {run:#?}");
     }

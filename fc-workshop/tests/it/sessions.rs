@@ -337,7 +337,7 @@ fn a_connection_holds_the_session_scripts() {
 }
 
 #[test]
-fn the_end_does_not_wait_for_a_peer_that_reads_nothing() {
+fn finishing_does_not_wait_for_a_stalled_peer() {
     let model = small();
     let reflector = Reflector::new(&model);
     let runtime = tokio::runtime::Builder::new_current_thread()
