@@ -5,11 +5,11 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::help::global;
 use crate::lang::{Language, both};
-use crate::place::Place;
+use crate::project_dirs::ProjectDirs;
 use crate::{
     call, certify, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate,
-    git, init, inspect, lint, lsp, mock, new, package, places, proxy, questions, release, retire,
-    schema, settle, shell,
+    git, init, inspect, lint, lsp, mock, new, package, proxy, questions, release, retire, schema,
+    settle, shell, where_,
 };
 
 /// Styles of help and usage errors.
@@ -24,7 +24,7 @@ pub const STYLES: Styles = Styles::styled()
 #[command(name = "fcproto", version, styles = STYLES)]
 pub struct Args {
     #[command(flatten)]
-    pub place: Place,
+    pub dirs: ProjectDirs,
     #[arg(
         long,
         value_name = "WHEN",
@@ -72,7 +72,7 @@ pub enum Command {
     Generate(generate::Options),
     Package(package::Options),
     Inspect(inspect::Options),
-    Where(places::Options),
+    Where(where_::Options),
     Codes(codes::Options),
     Questions(questions::Options),
     Settle(Box<settle::Options>),

@@ -5,8 +5,8 @@ use fc_spec::model::Model;
 
 use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
+use crate::project_dirs::ProjectDirs;
 use crate::versions::{Named, Shelf, today};
 
 /// Options of `fcproto changelog`.
@@ -22,8 +22,8 @@ pub struct Options {
     audience: Option<String>,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let shelf = Shelf::find(place, options.versions.new.is_none())?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let shelf = Shelf::find(dirs, options.versions.new.is_none())?;
     let [old, new] = shelf.named(&options.versions)?;
     let lang = lang();
     let title = match &options.versions.new {

@@ -8,9 +8,9 @@ use fc_spec::source::Sources;
 use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
 use crate::project::{Project, changed, in_repository};
+use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 
 /// Options of `fcproto check`.
@@ -57,8 +57,8 @@ pub enum Shown {
     Github,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let mut spec = Spec::read(place)?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let mut spec = Spec::read(dirs)?;
     if options.fix {
         spec = fixed(spec, options)?;
     }

@@ -9,8 +9,8 @@ use fc_workshop::complete::complete;
 
 use crate::help::described;
 use crate::lang::lang;
-use crate::place::Place;
 use crate::print;
+use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 
 /// The levels of nested keys that one completion offers.
@@ -98,13 +98,13 @@ impl Line {
 
     /// Reads the spec of the project.
     fn model(&self) -> Option<Model> {
-        let place = Place {
+        let dirs = ProjectDirs {
             root: self.get("root"),
             spec: self.get("spec"),
         };
         // The terminal shows the line that is being typed.
         print::quiet(true);
-        Spec::read(&place).ok()?.model
+        Spec::read(&dirs).ok()?.model
     }
 
     /// Returns the name and the arguments of a call.

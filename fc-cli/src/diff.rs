@@ -6,9 +6,9 @@ use fc_diff::{Finding, render};
 use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
 use crate::project::in_repository;
+use crate::project_dirs::ProjectDirs;
 use crate::versions::{Named, Shelf, day, today};
 
 /// Options of `fcproto diff`.
@@ -71,12 +71,12 @@ impl Kind {
     }
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     // Two named versions need no project, unless git has one of them.
     let Named { old, new } = &options.versions;
     let is_in_project =
         |name: &Option<String>| name.as_ref().is_none_or(|it| it.starts_with("git:"));
-    let shelf = Shelf::find(place, is_in_project(old) || is_in_project(new))?;
+    let shelf = Shelf::find(dirs, is_in_project(old) || is_in_project(new))?;
     let [old, mut new] = shelf.named(&options.versions)?;
     let format = match options.output.format {
         Shown::Text => fc_diff::Format::Text,

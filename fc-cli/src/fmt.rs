@@ -12,9 +12,9 @@ use fc_spec::syntax::{limits, read_bytes, read_dir, read_files};
 
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto fmt`.
 #[derive(Debug, Default, clap::Args)]
@@ -49,7 +49,7 @@ impl Options {
 /// The name of standard input in messages.
 const STDIN: &str = "<stdin>";
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     let mut faults = Faults::new();
     let from_stdin = options.files.iter().any(|file| file.as_os_str() == "-");
     if from_stdin && options.files.len() > 1 {
@@ -68,7 +68,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         let sources = read_bytes(STDIN.to_owned(), bytes, &mut faults);
         (PathBuf::new(), sources)
     } else if options.files.is_empty() {
-        let project = Project::find(place)?;
+        let project = Project::find(dirs)?;
         let sources = read_dir(&project.root, &project.spec, &mut faults);
         (project.root, sources)
     } else {

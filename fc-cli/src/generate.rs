@@ -10,8 +10,8 @@ use fc_spec::model::{Dump, Model};
 
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::project::{Project, is_there};
+use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 use crate::versions::Shelf;
 use crate::{input, plugin, print, progress, watch};
@@ -66,19 +66,23 @@ pub struct Options {
     as_of: Option<String>,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     if options.watch {
-        return watch::run(place, |place| once(place, options));
+        return watch::run(dirs, |dirs| once(dirs, options));
     }
-    once(place, options)
+    once(dirs, options)
 }
 
-fn once(place: &Place, options: &Options) -> Result<Status, Failure> {
-    in_project(Project::find(place)?, place, options)
+fn once(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    in_project(Project::find(dirs)?, dirs, options)
 }
 
-/// Generates or checks the files of a project. Messages use `place` in commands for the user.
-pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<Status, Failure> {
+/// Generates or checks the files of a project. Messages use `dirs` in commands for the user.
+pub fn in_project(
+    project: Project,
+    dirs: &ProjectDirs,
+    options: &Options,
+) -> Result<Status, Failure> {
     let dump = if let Some(path) = &options.from {
         Some((path.display().to_string(), input::text(path)?))
     } else if let Some(release) = &options.as_of {
@@ -88,14 +92,14 @@ pub fn in_project(project: Project, place: &Place, options: &Options) -> Result<
         None
     };
     if let Some((name, text)) = dump {
-        return make(&dumped(&name, &text)?, &name, project, place, options);
+        return make(&dumped(&name, &text)?, &name, project, dirs, options);
     }
     let spec = Spec::in_project(project);
     spec.show_faults()?;
     match &spec.model {
         Some(model) => {
             let read = counted(spec.files(), "文件", "file");
-            make(model, &read, spec.project, place, options)
+            make(model, &read, spec.project, dirs, options)
         }
         None => Ok(spec.status()),
     }
@@ -128,7 +132,7 @@ fn make(
     model: &Model,
     read: &str,
     project: Project,
-    place: &Place,
+    dirs: &ProjectDirs,
     options: &Options,
 ) -> Result<Status, Failure> {
     let root = options.out.as_ref().unwrap_or(&project.root);
@@ -160,7 +164,7 @@ fn make(
 
     let read = said!("读取 {read}\n", "read       {read}\n");
     if options.check {
-        return check(&plan, &read, place, options);
+        return check(&plan, &read, dirs, options);
     }
     plan.write()?;
     print::done(&(read + &summary(&plan)))?;
@@ -185,7 +189,12 @@ fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<Status, Failure> {
+fn check(
+    plan: &Plan,
+    read: &str,
+    dirs: &ProjectDirs,
+    options: &Options,
+) -> Result<Status, Failure> {
     if plan.is_fresh() {
         let count = counted(plan.unchanged.len(), "文件", "file");
         let current = print::good(&said!("最新", "up to date"));
@@ -208,7 +217,7 @@ fn check(plan: &Plan, read: &str, place: &Place, options: &Options) -> Result<St
     let stale = plan.created.len() + plan.updated.len() + plan.orphaned.len() + plan.foreign.len();
     let verb = if stale == 1 { "is" } else { "are" };
     let files = counted(stale, "文件", "file");
-    let command = command(place, options);
+    let command = command(dirs, options);
     print::error(&said!(
         "{files}已过期；运行 `{command}`",
         "{files} {verb} stale; run `{command}`"
@@ -241,7 +250,7 @@ fn summary(plan: &Plan) -> String {
 }
 
 /// Returns the command that brings the files up to date, with the options of this run.
-fn command(place: &Place, options: &Options) -> String {
+fn command(dirs: &ProjectDirs, options: &Options) -> String {
     let path = |path: &Option<PathBuf>| path.as_ref().map(|it| it.display().to_string());
     let only = options.only.join(",");
     let options = [
@@ -250,8 +259,8 @@ fn command(place: &Place, options: &Options) -> String {
         ("--out", path(&options.out)),
         ("--from", path(&options.from)),
         ("--as-of", options.as_of.clone()),
-        ("--root", path(&place.root)),
-        ("--spec", path(&place.spec)),
+        ("--root", path(&dirs.root)),
+        ("--spec", path(&dirs.spec)),
     ];
     let mut command = "fcproto generate".to_owned();
     for (option, value) in options {

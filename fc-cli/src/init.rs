@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status, unreadable, unwritable};
-use crate::place::Place;
+use crate::project_dirs::ProjectDirs;
 use crate::{generate, print};
 
 /// Options of `fcproto init`.
@@ -58,9 +58,9 @@ const MANIFEST: &str = include_str!("../templates/init/Cargo.toml.in");
 /// The crates that the project depends on.
 const CRATES: [&str; 2] = ["fc-derive", "fc-runtime"];
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     let directory = &options.directory;
-    if place.root.is_some() || place.spec.is_some() {
+    if dirs.root.is_some() || dirs.spec.is_some() {
         return Err(said!(
             "`fcproto init DIR` 在 DIR 中建立项目；它没有 --root 和 --spec",
             "`fcproto init DIR` creates a project in DIR; leave out --root and --spec"
@@ -74,11 +74,11 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
     for (path, text) in files.into_iter().chain(others) {
         write(&directory.join(path), text)?;
     }
-    let place = Place {
+    let dirs = ProjectDirs {
         root: Some(directory.clone()),
         spec: None,
     };
-    let status = generate::run(&place, &generate::Options::default())?;
+    let status = generate::run(&dirs, &generate::Options::default())?;
     let (created, directory) = (
         print::good(&said!("已建立", "created")),
         directory.display(),

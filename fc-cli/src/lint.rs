@@ -9,9 +9,9 @@ use crate::check::{Denied, Shown};
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::place::Place;
 use crate::print;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 use crate::versions::{day, today};
 
@@ -35,8 +35,8 @@ pub struct Options {
     today: Option<String>,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(dirs)?;
     let mut wrong = Faults::new();
     let (settings, files) = settings(&project.root, FILE, &mut wrong);
     if !wrong.is_empty() {

@@ -7,9 +7,9 @@ use lsp_server::Connection;
 
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 use crate::versions::today;
 
 /// Options of `fcproto lsp`.
@@ -22,9 +22,9 @@ pub struct Options {
     stdio: bool,
 }
 
-pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, _options: &Options) -> Result<Status, Failure> {
     let (connection, threads) = Connection::stdio();
-    let was_asked_to_end = serve(&connection, &Here { place })?;
+    let was_asked_to_end = serve(&connection, &Here { dirs })?;
     // The writing thread ends when the connection is dropped.
     drop(connection);
     threads.join()?;
@@ -33,12 +33,12 @@ pub fn run(place: &Place, _options: &Options) -> Result<Status, Failure> {
 
 /// The host of the server, with the project options of the command line.
 struct Here<'p> {
-    place: &'p Place,
+    dirs: &'p ProjectDirs,
 }
 
 impl Host for Here<'_> {
     fn find(&self, directory: &Path) -> Result<fc_lsp::Project, String> {
-        let project = Project::find_from(self.place, directory);
+        let project = Project::find_from(self.dirs, directory);
         let project = project.map_err(|failure| print::words(failure.as_ref()))?;
         // Clients name files by absolute paths, independent of the server's directory.
         let root = std::path::absolute(&project.root).map_err(|error| error.to_string())?;

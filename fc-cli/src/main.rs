@@ -31,12 +31,11 @@ mod new;
 mod outcome;
 mod output;
 mod package;
-mod place;
-mod places;
 mod plugin;
 mod print;
 mod progress;
 mod project;
+mod project_dirs;
 mod proxy;
 mod questions;
 #[cfg(feature = "record")]
@@ -52,6 +51,7 @@ mod versions;
 #[cfg(feature = "view")]
 mod view;
 mod watch;
+mod where_;
 
 use std::process::ExitCode;
 
@@ -87,40 +87,40 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<Status, Failure> {
-    let place = &args.place;
+    let dirs = &args.dirs;
     match &args.command {
-        Command::Check(options) => check::run(place, options),
+        Command::Check(options) => check::run(dirs, options),
         Command::Explain(options) => explain::run(options),
-        Command::Lint(options) => lint::run(place, options),
-        Command::Fmt(options) => fmt::run(place, options),
-        Command::Init(options) => init::run(place, options),
-        Command::New(options) => new::run(&Spec::read(place)?, options),
-        Command::Generate(options) => generate::run(place, options),
-        Command::Package(options) => package::run(place, options),
-        Command::Inspect(options) => inspect::run(&Spec::read(place)?, options),
-        Command::Where(options) => places::run(place, options),
-        Command::Questions(options) => questions::run(Spec::read(place)?.valid()?, options),
-        Command::Settle(options) => settle::run(Spec::read(place)?, options),
-        Command::Diff(options) => diff::run(place, options),
-        Command::Changelog(options) => changelog::run(place, options),
-        Command::Release(options) => release::run(&Spec::read(place)?, options),
-        Command::Codes(options) => codes::run(Spec::read(place)?.valid()?, options),
-        Command::Decode(options) => decode::run(Spec::read(place)?.valid()?, options),
-        Command::Drift(options) => drift::run(&Spec::read(place)?, options),
-        Command::Encode(options) => encode::run(Spec::read(place)?.valid()?, options),
-        Command::Retire(options) => retire::run(&Spec::read(place)?, options),
-        Command::Call(options) => call::run(Spec::read(place)?.valid()?, options),
-        Command::Mock(options) => mock::run(Spec::read(place)?.valid()?, options),
-        Command::Certify(options) => certify::run(Spec::read(place)?.valid()?, options),
+        Command::Lint(options) => lint::run(dirs, options),
+        Command::Fmt(options) => fmt::run(dirs, options),
+        Command::Init(options) => init::run(dirs, options),
+        Command::New(options) => new::run(&Spec::read(dirs)?, options),
+        Command::Generate(options) => generate::run(dirs, options),
+        Command::Package(options) => package::run(dirs, options),
+        Command::Inspect(options) => inspect::run(&Spec::read(dirs)?, options),
+        Command::Where(options) => where_::run(dirs, options),
+        Command::Questions(options) => questions::run(Spec::read(dirs)?.valid()?, options),
+        Command::Settle(options) => settle::run(Spec::read(dirs)?, options),
+        Command::Diff(options) => diff::run(dirs, options),
+        Command::Changelog(options) => changelog::run(dirs, options),
+        Command::Release(options) => release::run(&Spec::read(dirs)?, options),
+        Command::Codes(options) => codes::run(Spec::read(dirs)?.valid()?, options),
+        Command::Decode(options) => decode::run(Spec::read(dirs)?.valid()?, options),
+        Command::Drift(options) => drift::run(&Spec::read(dirs)?, options),
+        Command::Encode(options) => encode::run(Spec::read(dirs)?.valid()?, options),
+        Command::Retire(options) => retire::run(&Spec::read(dirs)?, options),
+        Command::Call(options) => call::run(Spec::read(dirs)?.valid()?, options),
+        Command::Mock(options) => mock::run(Spec::read(dirs)?.valid()?, options),
+        Command::Certify(options) => certify::run(Spec::read(dirs)?.valid()?, options),
         #[cfg(feature = "record")]
-        Command::Record(options) => record::run(Spec::read(place)?.valid()?, options),
-        Command::Proxy(options) => proxy::run(Spec::read(place)?.valid()?, options),
-        Command::Lsp(options) => lsp::run(place, options),
+        Command::Record(options) => record::run(Spec::read(dirs)?.valid()?, options),
+        Command::Proxy(options) => proxy::run(Spec::read(dirs)?.valid()?, options),
+        Command::Lsp(options) => lsp::run(dirs, options),
         Command::Completions(options) => shell::completions(options),
         Command::Man(options) => shell::man(options),
-        Command::Git(options) => git::run(place, options),
-        Command::GitDiff(options) => git::diff::run(place, options),
-        Command::Schema(options) => schema::run(place, options),
+        Command::Git(options) => git::run(dirs, options),
+        Command::GitDiff(options) => git::diff::run(dirs, options),
+        Command::Schema(options) => schema::run(dirs, options),
         Command::HelpPage => help::page(),
     }
 }

@@ -11,7 +11,7 @@ use fc_spec::syntax::read_files;
 
 use crate::lang::{in_lang, said};
 use crate::outcome::Failure;
-use crate::place::Place;
+use crate::project_dirs::ProjectDirs;
 
 /// The file that every spec has.
 const PROTOCOL: &str = "protocol.yaml";
@@ -29,37 +29,37 @@ pub struct Project {
 
 impl Project {
     /// Returns the named project, or the nearest one upwards from the current directory.
-    pub fn find(place: &Place) -> Result<Self, Failure> {
-        Self::at(root(place)?, place)
+    pub fn find(dirs: &ProjectDirs) -> Result<Self, Failure> {
+        Self::at(root(dirs)?, dirs)
     }
 
     /// Returns the directory of the spec without `fc.yaml`, relative to the root.
-    pub fn usual_spec(place: &Place) -> PathBuf {
-        let spec = place.spec.clone();
+    pub fn usual_spec(dirs: &ProjectDirs) -> PathBuf {
+        let spec = dirs.spec.clone();
         spec.unwrap_or_else(|| Targets::default().spec.into())
     }
 
     /// Returns the named project, or the innermost one that contains a file. `path` is relative to the current
     /// directory.
-    pub fn around(place: &Place, path: &Path) -> Result<Option<Self>, Failure> {
-        let root = match &place.root {
+    pub fn around(dirs: &ProjectDirs, path: &Path) -> Result<Option<Self>, Failure> {
+        let root = match &dirs.root {
             Some(root) => Some(root.clone()),
             None => path.ancestors().skip(1).find_map(|above| {
                 let is_here = above.as_os_str().is_empty();
                 let above = if is_here { Path::new(".") } else { above };
-                is_project(above, place).then(|| above.to_owned())
+                is_project(above, dirs).then(|| above.to_owned())
             }),
         };
-        root.map(|root| Self::at(root, place)).transpose()
+        root.map(|root| Self::at(root, dirs)).transpose()
     }
 
     /// Like [`Self::find`], from another directory.
-    pub fn find_from(place: &Place, directory: &Path) -> Result<Self, Failure> {
-        let root = match &place.root {
-            Some(_) => root(place)?,
-            None => above(place, directory)?,
+    pub fn find_from(dirs: &ProjectDirs, directory: &Path) -> Result<Self, Failure> {
+        let root = match &dirs.root {
+            Some(_) => root(dirs)?,
+            None => above(dirs, directory)?,
         };
-        Self::at(root, place)
+        Self::at(root, dirs)
     }
 
     /// Writes the files of the spec that have changed, and returns their paths.
@@ -72,12 +72,12 @@ impl Project {
         Ok(written)
     }
 
-    fn at(root: PathBuf, place: &Place) -> Result<Self, Failure> {
+    fn at(root: PathBuf, dirs: &ProjectDirs) -> Result<Self, Failure> {
         let targets = match settings(&root)? {
             Some(text) => Targets::read(&text)?,
             None => Targets::default(),
         };
-        let spec = place.spec.clone();
+        let spec = dirs.spec.clone();
         let spec = spec.unwrap_or_else(|| PathBuf::from(&targets.spec));
         Ok(Self {
             root,
@@ -122,8 +122,8 @@ pub fn is_there(path: &Path) -> bool {
 }
 
 /// Returns the directory of the project that [`Project::find`] finds. It does not read `fc.yaml`.
-pub fn root(place: &Place) -> Result<PathBuf, Failure> {
-    if let Some(root) = &place.root {
+pub fn root(dirs: &ProjectDirs) -> Result<PathBuf, Failure> {
+    if let Some(root) = &dirs.root {
         if !root.is_dir() {
             let root = root.display();
             return Err(said!("`{root}` 不是目录", "`{root}` is not a directory").into());
@@ -136,15 +136,15 @@ pub fn root(place: &Place) -> Result<PathBuf, Failure> {
             "cannot find the current directory: {error}; name one with --root"
         )
     })?;
-    above(place, &here)
+    above(dirs, &here)
 }
 
-fn above(place: &Place, here: &Path) -> Result<PathBuf, Failure> {
+fn above(dirs: &ProjectDirs, here: &Path) -> Result<PathBuf, Failure> {
     here.ancestors()
-        .find(|directory| is_project(directory, place))
+        .find(|directory| is_project(directory, dirs))
         .map(PathBuf::from)
         .ok_or_else(|| {
-            let protocol = protocol(place);
+            let protocol = protocol(dirs);
             let protocol = protocol.display();
             said!(
                 "这里和上级目录中都没有 `{FILE}` 或 `{protocol}`；请进入项目目录，或用 --root 指定",
@@ -154,13 +154,13 @@ fn above(place: &Place, here: &Path) -> Result<PathBuf, Failure> {
         })
 }
 
-fn is_project(directory: &Path, place: &Place) -> bool {
-    is_there(&directory.join(FILE)) || is_there(&directory.join(protocol(place)))
+fn is_project(directory: &Path, dirs: &ProjectDirs) -> bool {
+    is_there(&directory.join(FILE)) || is_there(&directory.join(protocol(dirs)))
 }
 
 /// Returns the path of `protocol.yaml` without `fc.yaml`, relative to the project's directory.
-fn protocol(place: &Place) -> PathBuf {
-    Project::usual_spec(place).join(PROTOCOL)
+fn protocol(dirs: &ProjectDirs) -> PathBuf {
+    Project::usual_spec(dirs).join(PROTOCOL)
 }
 
 /// Returns the path from the repository to the project's root, with `/` as separator. It is empty if they are the same.

@@ -5,9 +5,9 @@ use fc_spec::model::Languages;
 
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto schema`.
 #[derive(Debug, clap::Args)]
@@ -31,11 +31,11 @@ enum Of {
     Dump,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     print::result(&match options.of {
         Of::Spec => {
             // Without a project, texts are in both languages.
-            let project = Project::find(place).ok();
+            let project = Project::find(dirs).ok();
             fc_spec::language::schema(project.map_or(Languages::All, |it| it.targets.texts))
         }
         Of::Project => fc_spec::language::project_schema(),

@@ -8,10 +8,10 @@ use fc_spec::syntax::read_dir;
 
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status, Told};
-use crate::place::Place;
 use crate::print;
 use crate::progress;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// A spec that has been read and checked.
 pub struct Spec {
@@ -27,8 +27,8 @@ pub struct Spec {
 
 impl Spec {
     /// Finds the project, then reads and checks its spec.
-    pub fn read(place: &Place) -> Result<Self, Failure> {
-        Ok(Self::in_project(Project::find(place)?))
+    pub fn read(dirs: &ProjectDirs) -> Result<Self, Failure> {
+        Ok(Self::in_project(Project::find(dirs)?))
     }
 
     /// Reads and checks the spec of a project.

@@ -9,10 +9,10 @@ use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status, Told, unreadable};
-use crate::place::Place;
 use crate::print;
 use crate::progress;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// The versions to compare.
 #[derive(Debug, clap::Args)]
@@ -47,8 +47,8 @@ impl Shelf {
     }
 
     /// Returns the shelf of the project. Without a project, uses the current directory if `is_needed` is `false`.
-    pub fn find(place: &Place, is_needed: bool) -> Result<Self, Failure> {
-        match Project::find(place) {
+    pub fn find(dirs: &ProjectDirs, is_needed: bool) -> Result<Self, Failure> {
+        match Project::find(dirs) {
             Ok(project) => Self::of(project),
             Err(error) if is_needed => Err(error),
             Err(_) => Self::of(Project {

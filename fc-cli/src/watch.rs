@@ -18,8 +18,8 @@ use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher as _};
 
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::project::{Project, settings};
+use crate::project_dirs::ProjectDirs;
 use crate::{plugin, print, project};
 
 /// The time without events before the spec is read again. Editors and git change several files at once.
@@ -31,13 +31,13 @@ const AT_MOST: Duration = Duration::from_secs(1);
 /// Runs `work`, and runs it again after each change of the spec or `fc.yaml`, until Ctrl-C. Errors of the spec and
 /// failures are shown, and the loop continues.
 pub fn run(
-    place: &Place,
-    work: impl Fn(&Place) -> Result<Status, Failure>,
+    dirs: &ProjectDirs,
+    work: impl Fn(&ProjectDirs) -> Result<Status, Failure>,
 ) -> Result<Status, Failure> {
-    let root = project::root(place)?;
-    let place = Place {
+    let root = project::root(dirs)?;
+    let dirs = ProjectDirs {
         root: Some(root.clone()),
-        spec: place.spec.clone(),
+        spec: dirs.spec.clone(),
     };
     // One pending event is enough, whatever its number.
     let (sender, events) = sync_channel(1);
@@ -69,7 +69,7 @@ pub fn run(
 
     let mut last: Option<Input> = None;
     while !ended.load(Ordering::Relaxed) {
-        let spec = spec(&place);
+        let spec = spec(&dirs);
         // Watching starts before reading, so that no change is missed.
         places.renew(&root, &spec)?;
         let now = Input::read(&root, &spec);
@@ -77,7 +77,7 @@ pub fn run(
             if let Some(last) = &last {
                 print::done(&now.since(last))?;
             }
-            if let Err(failure) = work(&place) {
+            if let Err(failure) = work(&dirs) {
                 if print::is_closed_pipe(failure.as_ref()) {
                     return Err(failure);
                 }
@@ -104,8 +104,8 @@ fn wait(events: &Receiver<()>) {
 }
 
 /// Returns the directory of the spec: the usual one while `fc.yaml` cannot be read.
-fn spec(place: &Place) -> PathBuf {
-    Project::find(place).map_or_else(|_| Project::usual_spec(place), |project| project.spec)
+fn spec(dirs: &ProjectDirs) -> PathBuf {
+    Project::find(dirs).map_or_else(|_| Project::usual_spec(dirs), |project| project.spec)
 }
 
 fn cannot(path: &Path, error: &notify::Error) -> String {

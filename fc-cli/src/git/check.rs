@@ -10,12 +10,12 @@ use fc_codegen::target::FILE;
 use super::{git_line, git_with, known};
 use crate::lang::said;
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::project::{Project, is_there};
+use crate::project_dirs::ProjectDirs;
 use crate::{check, fmt, generate, print};
 
-pub fn run(place: &Place) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
+pub fn run(dirs: &ProjectDirs) -> Result<Status, Failure> {
+    let project = Project::find(dirs)?;
     let staged = Staged::of(&project)?;
     let root = staged.root();
     let is_project = [Path::new(FILE), project.spec.as_path()]
@@ -25,9 +25,9 @@ pub fn run(place: &Place) -> Result<Status, Failure> {
         // The commit has no project, or removes it.
         return Ok(Status::Fine);
     }
-    let there = Place {
+    let there = ProjectDirs {
         root: Some(root),
-        spec: place.spec.clone(),
+        spec: dirs.spec.clone(),
     };
     print::quiet(true);
     let status = fmt::run(&there, &fmt::Options::checking())?;
@@ -39,7 +39,7 @@ pub fn run(place: &Place) -> Result<Status, Failure> {
         return Ok(status);
     }
     let options = generate::Options::checking(Vec::new());
-    generate::in_project(Project::find(&there)?, place, &options)
+    generate::in_project(Project::find(&there)?, dirs, &options)
 }
 
 /// A copy of the staged files in a temporary directory. Dropping it removes the directory.

@@ -12,9 +12,9 @@ use fc_spec::syntax::read_dir;
 use super::{git, spec_file};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status, unreadable};
-use crate::place::Place;
 use crate::print;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 use crate::versions::{packages, today};
 
 /// The number of commits that are searched for a version of the file.
@@ -49,7 +49,7 @@ struct Side {
     hex: String,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     let path = options.path.display();
     let [old_file, old_hex, _, new_file, new_hex, _, renamed @ ..] = options.versions.as_slice()
     else {
@@ -68,7 +68,7 @@ pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
         super::attributes::DRIVER,
         new_path.display()
     );
-    match in_words(place, &old, &new)? {
+    match in_words(dirs, &old, &new)? {
         Some(words) if !words.is_empty() => shown += &words,
         words => {
             if words.is_some() {
@@ -109,8 +109,8 @@ impl Side {
 }
 
 /// Returns a description of the change, empty for no change. Returns `None` if no spec fits both versions of the file.
-fn in_words(place: &Place, old: &Side, new: &Side) -> Result<Option<String>, Failure> {
-    let Some(project) = Project::around(place, &new.path)? else {
+fn in_words(dirs: &ProjectDirs, old: &Side, new: &Side) -> Result<Option<String>, Failure> {
+    let Some(project) = Project::around(dirs, &new.path)? else {
         return Ok(None);
     };
     let inside = |side: &Side| {

@@ -10,9 +10,9 @@ use fc_spec::merge::merge;
 use super::spec_file;
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status, unreadable, unwritable};
-use crate::place::Place;
 use crate::print;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto git merge`.
 #[derive(Debug, clap::Args)]
@@ -39,8 +39,8 @@ pub struct Options {
     path: PathBuf,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::around(place, &options.path)?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let project = Project::around(dirs, &options.path)?;
     let inside = project.as_ref().and_then(|project| {
         let path = options.path.strip_prefix(&project.root);
         let path = path.unwrap_or(&options.path).to_str()?;

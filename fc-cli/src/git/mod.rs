@@ -14,8 +14,8 @@ use std::process::{Command, Stdio};
 
 use crate::lang::said;
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto git`.
 #[derive(Debug, clap::Args)]
@@ -34,13 +34,13 @@ enum Action {
     Merge(merge::Options),
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     match &options.command {
-        Action::Setup(options) => setup::run(place, options),
-        Action::Check => check::run(place),
-        Action::Stage(options) => stage::run(place, options),
-        Action::Diff(options) => diff::run(place, options),
-        Action::Merge(options) => merge::run(place, options),
+        Action::Setup(options) => setup::run(dirs, options),
+        Action::Check => check::run(dirs),
+        Action::Stage(options) => stage::run(dirs, options),
+        Action::Diff(options) => diff::run(dirs, options),
+        Action::Merge(options) => merge::run(dirs, options),
     }
 }
 

@@ -8,9 +8,9 @@ use super::attributes::{DRIVER, missing};
 use super::{git, git_line};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status, unwritable};
-use crate::place::Place;
 use crate::print;
 use crate::project::{Project, is_there};
+use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto git setup`.
 #[derive(Debug, clap::Args)]
@@ -46,8 +46,8 @@ esac
     ),
 ];
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(dirs)?;
     let root = &project.root;
     let command = this_command()?;
     let hooks = if options.hooks {

@@ -9,8 +9,8 @@ use super::{git, git_line, git_with, known, line};
 use crate::generate;
 use crate::lang::both;
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto git stage`.
 #[derive(Debug, clap::Args)]
@@ -22,11 +22,11 @@ pub struct Options {
     amend: bool,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(dirs)?;
     let root = &project.root;
     let before = generated(root)?;
-    let status = generate::run(place, &generate::Options::default())?;
+    let status = generate::run(dirs, &generate::Options::default())?;
     if status != Status::Fine {
         return Ok(status);
     }

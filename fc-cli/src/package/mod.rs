@@ -23,8 +23,8 @@ use fc_spec::model::Model;
 use crate::generate;
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status, unwritable};
-use crate::place::Place;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 use crate::versions::Shelf;
 use crate::{input, print, progress};
@@ -134,12 +134,12 @@ impl Job<'_> {
     }
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(dirs)?;
     let languages = options.languages(&project)?;
     let names = languages.iter().map(|it| it.name().to_owned()).collect();
     let checking = generate::Options::checking(names);
-    let status = generate::in_project(project.clone(), place, &checking)?;
+    let status = generate::in_project(project.clone(), dirs, &checking)?;
     let spec = Spec::in_project(project.clone());
     let Some(model) = spec.model.filter(|_| status == Status::Fine) else {
         return Ok(status);

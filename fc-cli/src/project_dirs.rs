@@ -1,13 +1,13 @@
-//! Global options for the place of the project.
+//! Global options for the directories of the project.
 
 use std::path::PathBuf;
 
 use crate::help::global;
 use crate::lang::both;
 
-/// The place of the project and its spec.
+/// The directories of the project and its spec.
 #[derive(Debug, clap::Args)]
-pub struct Place {
+pub struct ProjectDirs {
     #[arg(
         long,
         value_name = "DIR",

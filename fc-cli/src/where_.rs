@@ -8,9 +8,9 @@ use fc_spec::syntax::read_dir;
 
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
-use crate::place::Place;
 use crate::print;
 use crate::project::Project;
+use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto where`.
 #[derive(Debug, clap::Args)]
@@ -22,8 +22,8 @@ pub struct Options {
     name: String,
 }
 
-pub fn run(place: &Place, options: &Options) -> Result<Status, Failure> {
-    let project = Project::find(place)?;
+pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
+    let project = Project::find(dirs)?;
     let mut faults = Faults::new();
     let sources = read_dir(&project.root, &project.spec, &mut faults);
     let loaded = load(&sources, &mut faults);
