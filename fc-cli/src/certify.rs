@@ -18,7 +18,7 @@ use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status, unanswered, unwritable};
 use crate::output::Output;
 use crate::print;
-use crate::recording::Shown;
+use crate::recording::OutputFormat;
 
 /// Options of `fcproto certify`.
 #[derive(Debug, clap::Args)]
@@ -68,7 +68,7 @@ pub struct Options {
     )]
     only: Vec<String>,
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
 }
 
 pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
@@ -105,7 +105,7 @@ pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
         }
     }
     let [passed, failed, skipped] = certificate.counts();
-    if options.output.format == Shown::Text {
+    if options.output.format == OutputFormat::Text {
         print::done(&said!(
             "{passed} 项通过，{failed} 项失败，{skipped} 项跳过\n",
             "{passed} passed, {failed} failed, {skipped} skipped\n"
@@ -169,13 +169,13 @@ fn effects(allowed: Option<Allowed>) -> Vec<Effect> {
     all.into_iter().filter(may).collect()
 }
 
-fn show(format: Shown, trial: &Trial) {
+fn show(format: OutputFormat, trial: &Trial) {
     let (result, reason) = match &trial.outcome {
         Outcome::Passed => (both("通过", "passed"), None),
         Outcome::Failed(failure) => (both("失败", "FAILED"), Some(&failure.reason)),
         Outcome::Skipped(reason) => (both("跳过", "skipped"), Some(reason)),
     };
-    let line = if format == Shown::Json {
+    let line = if format == OutputFormat::Json {
         certify::json_line(trial)
     } else {
         let reason = reason.map(|reason| format!(": {}", in_lang(reason)));

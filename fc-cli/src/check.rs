@@ -17,7 +17,7 @@ use crate::spec::Spec;
 #[derive(Debug, clap::Args)]
 pub struct Options {
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
     #[arg(
         long,
         value_name = "WHAT",
@@ -46,7 +46,7 @@ pub enum Denied {
 
 /// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Shown {
+pub enum OutputFormat {
     #[value(help = both("带规范摘录，供人阅读", "With excerpts from the spec, for people"))]
     Text,
     #[value(help = both("每行一个 JSON 对象", "One JSON object per line"))]
@@ -69,7 +69,7 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
         .output
         .format
         .show(&spec.project, &spec.faults, &spec.sources)?;
-    if let (Shown::Text, Some(model)) = (options.output.format, &spec.model) {
+    if let (OutputFormat::Text, Some(model)) = (options.output.format, &spec.model) {
         let files = counted(spec.files(), "文件", "file");
         let operations = counted(model.operations.len(), "接口", "operation");
         let types = counted(model.types.len(), "类型", "type");
@@ -87,7 +87,7 @@ fn fixed(spec: Spec, options: &Options) -> Result<Spec, Failure> {
     let Some(fixed) = fix_all(&spec.sources, |sources| {
         spec.instead(sources.clone()).faults
     }) else {
-        if options.output.format == Shown::Text {
+        if options.output.format == OutputFormat::Text {
             print::done(&said!(
                 "没有能自动修改的错误\n",
                 "no error has a certain fix\n"
@@ -102,7 +102,7 @@ fn fixed(spec: Spec, options: &Options) -> Result<Spec, Failure> {
         return Ok(spec);
     }
     spec.project.write_changes(&spec.sources, &fixed.sources)?;
-    if options.output.format == Shown::Text {
+    if options.output.format == OutputFormat::Text {
         let good = print::good(&said!("已修改", "fixed"));
         let lines = fixed.done.iter().map(|it| {
             let message = lang().text(&it.message);
@@ -113,7 +113,7 @@ fn fixed(spec: Spec, options: &Options) -> Result<Spec, Failure> {
     Ok(Spec::in_project(spec.project))
 }
 
-impl Shown {
+impl OutputFormat {
     /// Shows diagnostics. Text for people goes to standard error, and formats for programs go to standard output.
     pub fn show(
         self,
@@ -137,7 +137,7 @@ impl Options {
     pub fn strict() -> Self {
         Self {
             output: Output {
-                format: Shown::Text,
+                format: OutputFormat::Text,
             },
             deny: Some(Denied::Warnings),
             fix: false,

@@ -25,11 +25,11 @@ pub struct Options {
         conflicts_with = "codes",
         help = both("输出格式", "Output format")
     )]
-    format: Shown,
+    format: OutputFormat,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Shown {
+enum OutputFormat {
     #[value(help = both("在终端上阅读", "For reading on a terminal"))]
     Text,
     #[value(help = both("一个 JSON 文档，含两种语言", "One JSON document in both languages"))]
@@ -44,8 +44,8 @@ pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
             let codes = options.codes.iter();
             codes.map(|code| map.standing(*code, lang)).collect()
         }
-        Shown::Text => map.text(lang),
-        Shown::Json => map.json(),
+        OutputFormat::Text => map.text(lang),
+        OutputFormat::Json => map.json(),
     })?;
     Ok(Status::Fine)
 }

@@ -13,7 +13,7 @@ use crate::lang::{both, lang, said};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
-use crate::recording::{Recording, Shown};
+use crate::recording::{OutputFormat, Recording};
 
 /// Options of `fcproto decode`.
 #[derive(Debug, clap::Args)]
@@ -53,7 +53,7 @@ pub struct Options {
     )]
     only: Option<Only>,
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
 }
 
 /// The part to show.
@@ -154,7 +154,7 @@ impl Printer<'_, '_> {
         if record.error.is_some() {
             self.status = Status::Faulty;
         }
-        let mut text = if self.options.output.format == Shown::Json {
+        let mut text = if self.options.output.format == OutputFormat::Json {
             decode::json(record)
         } else {
             decode::text(record, self.model, lang())
@@ -162,7 +162,8 @@ impl Printer<'_, '_> {
         text.truncate(text.trim_end().len());
         text.push('\n');
         // A blank line separates the trees.
-        if self.options.output.format == Shown::Text && std::mem::replace(&mut self.has_shown, true)
+        if self.options.output.format == OutputFormat::Text
+            && std::mem::replace(&mut self.has_shown, true)
         {
             self.out.write_all(b"\n")?;
         }

@@ -17,7 +17,7 @@ pub struct Options {
     #[command(flatten)]
     versions: Named,
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
     #[arg(
         long,
         value_name = "KINDS",
@@ -35,7 +35,7 @@ pub struct Options {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Shown {
+enum OutputFormat {
     #[value(help = both("带两个版本的行，供人阅读", "With the lines of both versions, for people"))]
     Text,
     #[value(help = both("一个 JSON 文档", "One JSON document"))]
@@ -79,14 +79,17 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     let shelf = Shelf::find(dirs, is_in_project(old) || is_in_project(new))?;
     let [old, mut new] = shelf.named(&options.versions)?;
     let format = match options.output.format {
-        Shown::Text => fc_diff::Format::Text,
-        Shown::Json => fc_diff::Format::Json,
-        Shown::Markdown => fc_diff::Format::Markdown,
-        Shown::Github => fc_diff::Format::Github,
-        Shown::Sarif => fc_diff::Format::Sarif,
+        OutputFormat::Text => fc_diff::Format::Text,
+        OutputFormat::Json => fc_diff::Format::Json,
+        OutputFormat::Markdown => fc_diff::Format::Markdown,
+        OutputFormat::Github => fc_diff::Format::Github,
+        OutputFormat::Sarif => fc_diff::Format::Sarif,
     };
     let findings = shelf.compare(&old, &new, &today(options.today.as_deref()))?;
-    if matches!(options.output.format, Shown::Github | Shown::Sarif) {
+    if matches!(
+        options.output.format,
+        OutputFormat::Github | OutputFormat::Sarif
+    ) {
         new.sources = new.sources.below(&in_repository(&shelf.project.root));
     }
     let lang = lang();

@@ -9,7 +9,7 @@ use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
 use crate::print;
-use crate::recording::{Recording, Shown};
+use crate::recording::{OutputFormat, Recording};
 use crate::spec::Spec;
 
 /// Options of `fcproto drift`.
@@ -18,7 +18,7 @@ pub struct Options {
     #[command(flatten)]
     recording: Recording,
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
     #[arg(
         long,
         help = both("显示能消除偏差的 YAML 修改", "Show the edits of the YAML that would settle deviations")
@@ -38,14 +38,14 @@ pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     for deviation in &report.deviations {
         show(spec, options, deviation)?;
     }
-    if options.output.format == Shown::Text {
+    if options.output.format == OutputFormat::Text {
         print::done(&summary(&report))?;
     }
     Ok(Status::fine_if(report.deviations.is_empty()))
 }
 
 fn show(spec: &Spec, options: &Options, deviation: &Deviation<'_>) -> io::Result<()> {
-    if options.output.format == Shown::Json {
+    if options.output.format == OutputFormat::Json {
         return print::result(&(drift::json(deviation) + "\n"));
     }
     let mut text = drift::text(deviation, lang()) + "\n";

@@ -17,7 +17,7 @@ pub struct Options {
         default_value = "json",
         help = both("输出格式", "Output format")
     )]
-    format: Shown,
+    format: OutputFormat,
     #[arg(
         long = "for",
         value_name = "AUDIENCE",
@@ -28,7 +28,7 @@ pub struct Options {
 
 /// The output format.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Shown {
+enum OutputFormat {
     #[value(help = both("一个 JSON 文档", "One JSON document"))]
     Json,
     #[value(help = both("同样的内容，YAML 格式", "The same as YAML"))]
@@ -40,8 +40,8 @@ pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     if let Some(model) = &spec.model {
         let part = part(model, options.audience.as_deref())?;
         print::result(&match options.format {
-            Shown::Json => fc_codegen::inspect::json(&part),
-            Shown::Yaml => fc_codegen::inspect::yaml(&part),
+            OutputFormat::Json => fc_codegen::inspect::json(&part),
+            OutputFormat::Yaml => fc_codegen::inspect::yaml(&part),
         })?;
     }
     Ok(spec.status())

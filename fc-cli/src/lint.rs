@@ -5,7 +5,7 @@ use fc_spec::diagnostic::Faults;
 use fc_spec::index::definitions;
 use fc_spec::lint::{faults, lint, settings, waive};
 
-use crate::check::{Denied, Shown};
+use crate::check::{Denied, OutputFormat};
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
@@ -19,7 +19,7 @@ use crate::versions::{day, today};
 #[derive(Debug, clap::Args)]
 pub struct Options {
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
     #[arg(
         long,
         value_name = "WHAT",
@@ -60,7 +60,7 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
         .output
         .format
         .show(&spec.project, &shown, &spec.sources)?;
-    if options.output.format == Shown::Text && shown.is_empty() {
+    if options.output.format == OutputFormat::Text && shown.is_empty() {
         let waived = findings.iter().filter(|it| it.waived.is_some()).count();
         let waived = match waived {
             0 => String::new(),

@@ -20,7 +20,7 @@ use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
 use crate::print;
-use crate::recording::Shown;
+use crate::recording::OutputFormat;
 
 /// Options of `fcproto proxy`.
 #[derive(Debug, clap::Args)]
@@ -67,7 +67,7 @@ pub struct Options {
     )]
     view: bool,
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
 }
 
 pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
@@ -138,22 +138,22 @@ async fn relay<'m>(
     Ok(serve(&reflector, settings, listeners, sink, end).await?)
 }
 
-fn seed(seed: u64, format: Shown) -> String {
+fn seed(seed: u64, format: OutputFormat) -> String {
     match format {
-        Shown::Text => said!("种子 {seed}\n", "seed {seed}\n"),
-        Shown::Json => json!({ "seed": seed }).to_string() + "\n",
+        OutputFormat::Text => said!("种子 {seed}\n", "seed {seed}\n"),
+        OutputFormat::Json => json!({ "seed": seed }).to_string() + "\n",
     }
 }
 
-fn show(model: &Model, format: Shown, event: &Event<'_, '_>) -> io::Result<()> {
+fn show(model: &Model, format: OutputFormat, event: &Event<'_, '_>) -> io::Result<()> {
     let line = match (event, format) {
-        (Event::Record(record), Shown::Json) => decode::json(record),
-        (Event::Record(record), Shown::Text) => decode::line(record, model, lang()),
+        (Event::Record(record), OutputFormat::Json) => decode::json(record),
+        (Event::Record(record), OutputFormat::Text) => decode::line(record, model, lang()),
         (Event::Faults { flow, id, kinds }, format) => {
             let kinds: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
             let code = format!("0x{:04X}", id.code);
             let id = id.id;
-            if format == Shown::Json {
+            if format == OutputFormat::Json {
                 let flow = flow.to_string();
                 json!({ "connection": flow, "code": code, "msg_id": id, "faults": kinds })
                     .to_string()

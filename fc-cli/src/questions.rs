@@ -44,7 +44,7 @@ pub struct Options {
     )]
     decisions: bool,
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -68,7 +68,7 @@ enum State {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Shown {
+enum OutputFormat {
     #[value(help = both("在终端上阅读", "For reading on a terminal"))]
     Text,
     #[value(help = both("一个 JSON 文档，含两种语言", "One JSON document in both languages"))]
@@ -108,12 +108,12 @@ pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
         .into());
     }
     print::result(&match options.output.format {
-        Shown::Text if list.is_empty() => said!("没有问题\n", "no questions\n"),
-        Shown::Text if options.ids.is_empty() => list.text(),
-        Shown::Text => list.text() + &print::diff(&list.edits()),
-        Shown::Json => list.json(),
-        Shown::Markdown => list.markdown(),
-        Shown::Csv => list.csv(),
+        OutputFormat::Text if list.is_empty() => said!("没有问题\n", "no questions\n"),
+        OutputFormat::Text if options.ids.is_empty() => list.text(),
+        OutputFormat::Text => list.text() + &print::diff(&list.edits()),
+        OutputFormat::Json => list.json(),
+        OutputFormat::Markdown => list.markdown(),
+        OutputFormat::Csv => list.csv(),
     })?;
     Ok(Status::Fine)
 }

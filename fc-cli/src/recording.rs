@@ -68,7 +68,7 @@ impl From<Input> for decode::Format {
 
 /// The output for people or for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Shown {
+pub enum OutputFormat {
     #[value(help = both("供人阅读", "For people"))]
     Text,
     #[value(help = both("每条一行 JSON", "One line of JSON each"))]

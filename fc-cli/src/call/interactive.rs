@@ -181,7 +181,7 @@ impl Talk<'_, '_> {
             .into());
         }
         if line.list {
-            let is_json = self.options.output.format == super::Shown::Json;
+            let is_json = self.options.output.format == super::OutputFormat::Json;
             print::result(&show::list(self.reflector.model(), is_json))?;
             return Ok(Status::Fine);
         }

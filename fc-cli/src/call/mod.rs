@@ -109,11 +109,11 @@ pub struct Options {
     )]
     interactive: bool,
     #[command(flatten)]
-    output: Output<Shown>,
+    output: Output<OutputFormat>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Shown {
+enum OutputFormat {
     #[value(help = both("对齐的表格", "An aligned table"))]
     Text,
     #[value(help = both("每条消息一行 JSON", "One line of JSON per message"))]
@@ -134,7 +134,10 @@ pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
         return interactive::run(&reflector, options);
     }
     if options.list {
-        print::result(&show::list(model, options.output.format == Shown::Json))?;
+        print::result(&show::list(
+            model,
+            options.output.format == OutputFormat::Json,
+        ))?;
         return Ok(Status::Fine);
     }
     let request = request(&reflector, options, options.allow)?;
@@ -165,7 +168,7 @@ fn call<'r, 'm>(reflector: &'m Reflector<'m>, options: &'r Options) -> session::
         timeout: timeout.unwrap_or_else(|| facts::call_timeout(reflector.model())),
         follow: options.follow.map(Duration::from_secs),
         shown: show::Format {
-            json: options.output.format == Shown::Json,
+            json: options.output.format == OutputFormat::Json,
         },
     }
 }

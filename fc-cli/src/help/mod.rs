@@ -189,7 +189,7 @@ fn each(command: &mut Command, path: &[&str], change: &mut dyn FnMut(Command, &[
 }
 
 /// An argument in the form for help.
-struct Shown<'c> {
+struct ArgumentHelp<'c> {
     /// The term, such as `-q, --quiet`, `    --root <DIR>` or `[NAME]`.
     term: String,
     /// The help without the default.
@@ -201,7 +201,7 @@ struct Shown<'c> {
     argument: &'c Arg,
 }
 
-impl<'c> Shown<'c> {
+impl<'c> ArgumentHelp<'c> {
     fn new(argument: &'c Arg) -> Self {
         let name = argument.to_string();
         let term = match (argument.get_short(), argument.is_positional()) {
@@ -257,10 +257,10 @@ fn default_label() -> &'static str {
 }
 
 /// Returns the arguments of a command: its own in their order, then the global ones.
-fn arguments(command: &Command) -> (Vec<Shown<'_>>, Vec<Shown<'_>>) {
+fn arguments(command: &Command) -> (Vec<ArgumentHelp<'_>>, Vec<ArgumentHelp<'_>>) {
     let visible = command.get_arguments().filter(|it| !it.is_hide_set());
     let (own, mut shared): (Vec<_>, Vec<_>) = visible
-        .map(Shown::new)
+        .map(ArgumentHelp::new)
         .partition(|shown| shown.argument.get_help_heading() != Some(global()));
     shared.sort_by_key(|shown| matches!(shown.argument.get_id().as_str(), "help" | "version"));
     (own, shared)

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use clap::Command;
 
-use super::{Help, Part, Shown, arguments, described, of, terminal, usage};
+use super::{ArgumentHelp, Help, Part, arguments, described, of, terminal, usage};
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
@@ -125,7 +125,7 @@ fn section(command: &mut Command, path: &[&str], help: &Help) -> String {
 }
 
 /// Returns a table of arguments, and a table for the values of each argument that has described values.
-fn options(shown: &[Shown<'_>]) -> String {
+fn options(shown: &[ArgumentHelp<'_>]) -> String {
     if shown.is_empty() {
         return String::new();
     }

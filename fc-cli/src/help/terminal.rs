@@ -7,7 +7,7 @@ use terminal_size::{Width, terminal_size};
 use unicode_width::UnicodeWidthStr as _;
 
 use super::wrap::wrap;
-use super::{Help, Part, Shown, arguments, default_label, global};
+use super::{ArgumentHelp, Help, Part, arguments, default_label, global};
 use crate::args::STYLES;
 use crate::lang::{both, said};
 
@@ -48,7 +48,7 @@ pub fn body(command: &Command, summary: &str, usage: &str, width: usize) -> Stri
     let (own, shared) = arguments(command);
     let (positional, options): (Vec<_>, Vec<_>) =
         own.iter().partition(|it| it.argument.is_positional());
-    let rows = |shown: &[&Shown<'_>]| shown.iter().map(|it| row(it)).collect::<Vec<_>>();
+    let rows = |shown: &[&ArgumentHelp<'_>]| shown.iter().map(|it| row(it)).collect::<Vec<_>>();
     for (title, rows) in [
         (both("命令", "Commands"), commands),
         (both("参数", "Arguments"), rows(&positional)),
@@ -63,7 +63,7 @@ pub fn body(command: &Command, summary: &str, usage: &str, width: usize) -> Stri
 }
 
 /// Returns an argument as a term and its text.
-fn row(shown: &Shown<'_>) -> (String, String) {
+fn row(shown: &ArgumentHelp<'_>) -> (String, String) {
     let mut text = shown.text.clone();
     if let Some(default) = &shown.default {
         let _ = write!(text, " [{}{default}]", default_label());
@@ -81,7 +81,10 @@ pub fn details(command: &Command, help: &Help, width: usize) -> String {
     let (own, shared) = arguments(command);
     // The values of global options are on their lines. Only the program's own help has room for more.
     let shared = shared.iter().filter(|_| command.get_version().is_some());
-    let described = own.iter().chain(shared).filter_map(Shown::described_values);
+    let described = own
+        .iter()
+        .chain(shared)
+        .filter_map(ArgumentHelp::described_values);
     let mut parts = Vec::new();
     for (name, values) in described {
         let title = said!("`{name}` 的取值", "Values of `{name}`");

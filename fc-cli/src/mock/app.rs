@@ -19,7 +19,7 @@ use crate::endpoint::{at_port, with_port};
 use crate::lang::{both, in_lang, lang, said};
 use crate::outcome::{Failure, Status, unanswered};
 use crate::print;
-use crate::recording::Shown;
+use crate::recording::OutputFormat;
 
 /// Options of an app.
 #[derive(Debug, clap::Args)]
@@ -52,7 +52,7 @@ pub struct AppOptions {
         requires = "to",
         help = both("app 的输出格式", "Output format of the app")
     )]
-    format: Shown,
+    format: OutputFormat,
     #[arg(
         long,
         requires = "to",
@@ -141,9 +141,13 @@ fn check(model: &Model, scenario: &Scenario, allow: Option<Allowed>) -> Result<(
     Ok(())
 }
 
-fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::io::Result<()> {
+fn show(
+    reflector: &Reflector<'_>,
+    shown: OutputFormat,
+    event: &Event<'_, '_>,
+) -> std::io::Result<()> {
     let format = Format {
-        json: shown == Shown::Json,
+        json: shown == OutputFormat::Json,
     };
     let line = match event {
         Event::Waits(name) => {
@@ -159,13 +163,13 @@ fn show(reflector: &Reflector<'_>, shown: Shown, event: &Event<'_, '_>) -> std::
             let outcome = Outcome::of(reflector.model(), &message);
             let name = command.name.as_str();
             match shown {
-                Shown::Json => format.response(Some(name), frame, &outcome, &message, *took),
-                Shown::Text => summary(name, &outcome) + "\n",
+                OutputFormat::Json => format.response(Some(name), frame, &outcome, &message, *took),
+                OutputFormat::Text => summary(name, &outcome) + "\n",
             }
         }
         Event::Pushed(frame) => match (frame.operation, shown) {
-            (Some(operation), Shown::Json) => format.pushed(operation, frame, None),
-            (Some(operation), Shown::Text) => named(operation, frame.data.len()),
+            (Some(operation), OutputFormat::Json) => format.pushed(operation, frame, None),
+            (Some(operation), OutputFormat::Text) => named(operation, frame.data.len()),
             (None, _) => bytes(&format!("0x{:04X}", frame.id.code), frame.data.len()),
         },
         Event::Deviation(name, deviation) => {
