@@ -163,11 +163,16 @@ const AREAS: [Area; 31] = [
 const GENERATED: &str = "generated text";
 
 /// Directories without text of the project.
-const SKIPPED: [&str; 8] = [
+const SKIPPED: [&str; 13] = [
     "node_modules",
     "target",
     "build",
     "dist",
+    "cache",
+    ".temp",
+    "corpus",
+    "artifacts",
+    "coverage",
     ".gradle",
     ".venv",
     "__pycache__",
