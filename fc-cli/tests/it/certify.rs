@@ -32,6 +32,17 @@ fn a_mock_gets_a_certificate() {
 }
 
 #[test]
+fn an_unwritable_certificate_is_named() {
+    let project = Project::new();
+    let mock = Robot::mock(&project, &[]);
+    project.write("taken", "");
+    let certify = ["certify", "--robot", &mock.commands, "--lang", "en"];
+    let out = ["--only", "call.get_level", "--out", "taken/certificate"];
+    let run = project.fc(&[&certify[..], &out].concat()).expect(2);
+    assert!(run.stderr.contains("taken/certificate"), "{run:?}");
+}
+
+#[test]
 fn a_faulty_link_fails_a_trial() {
     let project = Project::new();
     let mock = Robot::mock(&project, &[]);

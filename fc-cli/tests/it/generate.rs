@@ -42,6 +42,12 @@ fn check_shows_stale_files_and_writes_nothing() {
     );
     assert_eq!(project.files(""), before);
 
+    let run = project
+        .fc(&["generate", "--check", "--out", "a b"])
+        .expect(1);
+    let end = "run `fcproto generate --out 'a b'`\n";
+    assert!(run.stderr.ends_with(end), "{run:#?}");
+
     let run = project.fc(&["generate"]).expect(0);
     assert!(
         run.stdout

@@ -24,6 +24,7 @@ mod replay;
 mod scenarios;
 mod sessions;
 mod support;
+mod table;
 #[cfg(feature = "view")]
 mod view;
 #[path = "../../../fc-spec/tests/it/yaml_as_json.rs"]

@@ -18,8 +18,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream, duplex};
+use tokio::runtime::{Builder, Runtime};
 use tokio::task::unconstrained;
-use tokio::time::advance;
+use tokio::time::{advance, timeout};
 
 /// The largest number of bytes between the two ends.
 const PIPE: usize = 1 << 20;
@@ -102,14 +103,16 @@ struct Run<'m> {
     sent_frames: u32,
 }
 
+/// Returns a runtime whose clock stands still until all tasks wait.
+fn paused() -> Runtime {
+    let mut builder = Builder::new_current_thread();
+    builder.enable_all().start_paused(true).build().unwrap()
+}
+
 fn run(script: &Script) -> Result<(), Failure> {
     let model = model_of(&script.given);
     let reflector = Reflector::new(&model);
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .start_paused(true)
-        .build()
-        .unwrap();
+    let runtime = paused();
     // A step takes all that needs no more time, so a task must not yield within it.
     runtime.block_on(unconstrained(async {
         let (ours, wire) = duplex(PIPE);
@@ -340,16 +343,13 @@ fn a_connection_holds_the_session_scripts() {
 fn finishing_does_not_wait_for_a_stalled_peer() {
     let model = small();
     let reflector = Reflector::new(&model);
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .start_paused(true)
-        .build()
-        .unwrap();
+    let runtime = paused();
     runtime.block_on(async {
         let (ours, _wire) = duplex(16);
         let mut connection: Connection<'_, _, ()> = Connection::new(&reflector, ours, 1);
         connection.send(&[0; 64]);
-        let error = connection.finish().await.unwrap_err();
+        let finished = timeout(Duration::from_secs(60), connection.finish()).await;
+        let error = finished.expect("an end").unwrap_err();
         assert_eq!(error.kind(), std::io::ErrorKind::TimedOut);
     });
 }

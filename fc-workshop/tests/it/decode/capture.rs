@@ -6,6 +6,8 @@ use etherparse::PacketBuilder;
 use fc_spec::model::Model;
 use fc_workshop::decode::Format;
 use serde_json::Value;
+use std::fmt::Write as _;
+use std::io::{self, Read};
 
 const PORT: u16 = 7001;
 const FIRST: u32 = 0xFFFF_FFF0;
@@ -199,6 +201,35 @@ fn responses_name_their_request_and_the_time_between() {
     let elapsed = found[1]["request"]["elapsed_ms"].as_f64().unwrap();
     assert!((elapsed - 1.0).abs() < 0.001, "{elapsed}");
     assert_eq!(found[0]["connection"], "10.0.0.2:50000 > 10.0.0.1:7001");
+}
+
+/// An input that cannot be read.
+struct Broken;
+
+impl Read for Broken {
+    fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+        Err(io::ErrorKind::BrokenPipe.into())
+    }
+}
+
+#[test]
+fn packets_before_a_read_error_are_decoded() {
+    let model = small();
+    let sent = sampled(&model, "unknown_body", 7);
+    let packet = packet(PORT, Send(0, sent.len()), &sent);
+    let mut text = "12:00:01.5 IP 10.0.0.2.50000 > 10.0.0.1.7001: Flags [P.]\n".to_owned();
+    for (number, bytes) in packet.chunks(16).enumerate() {
+        let _ = write!(text, "\t0x{:04x}: ", number * 16);
+        for byte in bytes {
+            let _ = write!(text, " {byte:02x}");
+        }
+        text.push('\n');
+    }
+    let input = text.as_bytes().chain(Broken);
+    let (found, result) = super::read(&model, input, None, &[]);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(error(&found[0]), "");
+    assert!(result.is_err());
 }
 
 #[test]
