@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use fc_lsp::{Host, serve};
+use fc_spec::model::Text;
 use lsp_server::Connection;
 
 use crate::lang::both;
@@ -37,11 +38,11 @@ struct Here<'p> {
 }
 
 impl Host for Here<'_> {
-    fn find(&self, directory: &Path) -> Result<fc_lsp::Project, String> {
+    fn find(&self, directory: &Path) -> Result<fc_lsp::Project, Text> {
         let project = Project::find_from(self.dirs, directory);
-        let project = project.map_err(|failure| print::words(failure.as_ref()))?;
+        let project = project.map_err(|failure| print::reason(failure.as_ref()))?;
         // Clients name files by absolute paths, independent of the server's directory.
-        let root = std::path::absolute(&project.root).map_err(|error| error.to_string())?;
+        let root = std::path::absolute(&project.root).map_err(|error| print::reason(&error))?;
         Ok(fc_lsp::Project::new(root, project.spec, project.targets))
     }
 

@@ -59,7 +59,7 @@ use clap::Parser;
 use clap_complete::CompleteEnv;
 
 use args::{Args, Command};
-use outcome::{Failure, Status, Told};
+use outcome::{Failure, Reported, Status};
 use spec::Spec;
 
 fn main() -> ExitCode {
@@ -76,7 +76,7 @@ fn main() -> ExitCode {
             // The reader of the output has closed it, so a message would have no reader.
             return Status::Fine;
         }
-        if let Some(Told(status)) = failure.downcast_ref() {
+        if let Some(Reported(status)) = failure.downcast_ref() {
             return *status;
         }
         print::failure(failure.as_ref());

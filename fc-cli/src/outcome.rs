@@ -45,15 +45,15 @@ pub type Failure = Box<dyn std::error::Error>;
 
 /// The failure of a command that has already shown the reason.
 #[derive(Debug)]
-pub struct Told(pub Status);
+pub struct Reported(pub Status);
 
-impl std::fmt::Display for Told {
+impl std::fmt::Display for Reported {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "exit status {}", self.0 as u8)
     }
 }
 
-impl std::error::Error for Told {}
+impl std::error::Error for Reported {}
 
 /// Shows that a robot has not answered. Returns other failures.
 pub fn unanswered(failure: Failure) -> Result<Status, Failure> {

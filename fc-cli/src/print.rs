@@ -5,7 +5,7 @@ use fc_codegen::target::TargetError;
 use fc_diff::VersionError;
 use fc_spec::diagnostic::{Faults, Format, render, summary};
 use fc_spec::load::SettleError;
-use fc_spec::model::{DumpError, ProjectionError};
+use fc_spec::model::{DumpError, ProjectionError, Text};
 use fc_spec::retire::RetireError;
 use fc_spec::scaffold::ScaffoldError;
 use fc_spec::source::Sources;
@@ -75,7 +75,7 @@ pub fn failure(failure: &(dyn Error + 'static)) {
         return;
     }
     // If standard error is closed as well, the exit status is the only signal.
-    let _ = error(&words(failure));
+    let _ = error(&in_lang(&reason(failure)));
 }
 
 /// Prints an error to standard error.
@@ -84,12 +84,12 @@ pub fn error(text: &str) -> io::Result<()> {
     message(&leveled(&line))
 }
 
-/// Returns the reason in the language of this run. Errors of libraries are in English only.
-pub fn words(failure: &(dyn Error + 'static)) -> String {
+/// Returns the reason of a failure. Some reasons are in the language of this run only, and those of libraries in English.
+pub fn reason(failure: &(dyn Error + 'static)) -> Text {
     macro_rules! of {
         ($($Known:ty),+) => {
             $(if let Some(error) = failure.downcast_ref::<$Known>() {
-                return in_lang(&error.text());
+                return Text::clone(&error.text());
             })+
         };
     }
@@ -106,7 +106,11 @@ pub fn words(failure: &(dyn Error + 'static)) -> String {
         InputError,
         ListenError
     );
-    failure.to_string()
+    let text = failure.to_string();
+    Text {
+        zh: text.clone(),
+        en: text,
+    }
 }
 
 /// The maximum number of paths that a message lists.

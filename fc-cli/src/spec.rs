@@ -7,7 +7,7 @@ use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
 
 use crate::lang::{both, lang, said};
-use crate::outcome::{Failure, Status, Told};
+use crate::outcome::{Failure, Reported, Status};
 use crate::print;
 use crate::progress;
 use crate::project::Project;
@@ -101,7 +101,7 @@ impl Spec {
             return Ok(model);
         }
         self.show_faults()?;
-        Err(Told(self.status()).into())
+        Err(Reported(self.status()).into())
     }
 
     /// Returns the exit status for the diagnostics.

@@ -8,7 +8,7 @@ use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gon
 use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{both, lang, said};
-use crate::outcome::{Failure, Status, Told, unreadable};
+use crate::outcome::{Failure, Reported, Status, unreadable};
 use crate::print;
 use crate::progress;
 use crate::project::Project;
@@ -73,7 +73,7 @@ impl Shelf {
     pub fn both(&self, old: &str, new: &str) -> Result<[Version; 2], Failure> {
         match (self.read(old)?, self.read(new)?) {
             (Some(old), Some(new)) => Ok([old, new]),
-            _ => Err(Told(Status::Faulty).into()),
+            _ => Err(Reported(Status::Faulty).into()),
         }
     }
 

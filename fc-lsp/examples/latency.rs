@@ -17,6 +17,7 @@ use fc_codegen::check::check;
 use fc_codegen::target::Targets;
 use fc_lsp::{Host, Project, serve};
 use fc_spec::diagnostic::Faults;
+use fc_spec::model::Text;
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
@@ -189,7 +190,7 @@ fn copy(from: &Path, to: &Path) {
 struct Here(PathBuf);
 
 impl Host for Here {
-    fn find(&self, _: &Path) -> Result<Project, String> {
+    fn find(&self, _: &Path) -> Result<Project, Text> {
         Ok(Project::new(
             self.0.clone(),
             "spec".into(),

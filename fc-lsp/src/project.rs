@@ -6,7 +6,7 @@ use fc_diff::{Packages, Version};
 use fc_spec::diagnostic::Faults;
 use fc_spec::index::Definitions;
 use fc_spec::lint::{self, faults, lint, waive};
-use fc_spec::model::Model;
+use fc_spec::model::{Model, Text};
 use fc_spec::source::Sources;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -17,7 +17,7 @@ pub trait Host {
     ///
     /// # Errors
     /// A sentence for the user if there is no project.
-    fn find(&self, directory: &Path) -> Result<Project, String>;
+    fn find(&self, directory: &Path) -> Result<Project, Text>;
 
     /// Returns the day that decides whether waivers are expired, `YYYY-MM-DD`.
     fn today(&self) -> String;

@@ -10,6 +10,7 @@ use crate::snapshot::Snapshot;
 use crate::uri;
 use crate::worker::Worker;
 use crate::workspace::Workspace;
+use fc_spec::model::Text;
 use gen_lsp_types as lsp;
 use lsp::Notification as _;
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
@@ -236,12 +237,12 @@ impl Server<'_> {
             // The first opened file may still belong to a project.
             self.notify::<lsp::LogMessageNotification>(&lsp::LogMessageParams {
                 kind: lsp::MessageType::Info,
-                message: why,
+                message: self.settings.lang.text(&why).to_owned(),
             });
         }
     }
 
-    fn find(&mut self, directory: &Path) -> Result<(), String> {
+    fn find(&mut self, directory: &Path) -> Result<(), Text> {
         let project = self.host.find(directory)?;
         let settings = Arc::clone(&self.settings);
         self.workspace = Some(Workspace::new(project, settings, self.host.today()));

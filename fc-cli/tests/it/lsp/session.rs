@@ -1,5 +1,6 @@
 //! Messages in an unusual order, in large numbers, or with invalid content.
 
+use lsp_server::Message;
 use serde_json::{Value, json};
 
 use crate::lsp::editor::Editor;
@@ -89,6 +90,25 @@ fn last_of_many_changes_is_published() {
     editor.write(TYPES, &text);
     assert_eq!(editor.codes(TYPES), [""; 0]);
     assert_eq!(editor.end(), 0);
+}
+
+#[test]
+fn invalid_settings_are_reported_in_the_language_of_the_editor() {
+    let project = project();
+    project.write("fc.yaml", "targetz: {}\n");
+    for (locale, expected) in [
+        ("zh-CN", "fc.yaml:1:1: “项目”没有键 `targetz`"),
+        ("en", "fc.yaml:1:1: `targetz` is not a key of the project"),
+    ] {
+        let mut editor = Editor::with(&project, json!({ "locale": locale }));
+        let told = editor.wait(|message| match message {
+            Message::Notification(it) if it.method == "window/logMessage" => {
+                Some(it.params["message"].clone())
+            }
+            _ => None,
+        });
+        assert_eq!(told, expected);
+    }
 }
 
 #[test]
