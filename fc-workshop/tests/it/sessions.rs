@@ -103,7 +103,7 @@ struct Run<'m> {
     sent_frames: u32,
 }
 
-/// Returns a runtime whose clock stands still until all tasks wait.
+/// Returns a runtime with a paused clock.
 fn paused() -> Runtime {
     let mut builder = Builder::new_current_thread();
     builder.enable_all().start_paused(true).build().unwrap()

@@ -93,7 +93,7 @@ fn last_of_many_changes_is_published() {
 }
 
 #[test]
-fn invalid_settings_are_reported_in_the_language_of_the_editor() {
+fn invalid_settings_have_the_language_of_the_editor() {
     let project = project();
     project.write("fc.yaml", "targetz: {}\n");
     for (locale, expected) in [
