@@ -6,14 +6,15 @@ use std::time::{Duration, SystemTime};
 
 use fc_codegen::inspect::fingerprint;
 use fc_reflect::Reflector;
-use fc_spec::model::{Effect, Model};
+use fc_spec::model::Model;
+use fc_workshop::address::with_port;
 use fc_workshop::certify::{self, Certificate, Outcome, Settings, Trial};
 use fc_workshop::client::Client;
 use fc_workshop::facts;
 use fc_workshop::run::{Interrupt, block_on};
 
-use crate::allow::Allowed;
-use crate::endpoint::{self, Ports, with_port};
+use crate::allow::{Allowed, permission};
+use crate::endpoint::{self, Ports};
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status, unanswered, unwritable};
 use crate::output::Output;
@@ -125,7 +126,7 @@ fn test_robot(
     let model = reflector.model();
     let settings = Settings {
         address: with_port(robot, model.transport.ports.command.number),
-        allowed: effects(options.allow),
+        permission: permission(options.allow),
         only: options.only.clone(),
     };
     let trials: Result<_, Failure> = block_on(async {
@@ -155,18 +156,6 @@ fn test_app(reflector: &Reflector<'_>, options: &Options) -> Result<Option<Teste
         }
         Ok(trials.map(|trials| (addresses.0.to_string(), trials)))
     })?
-}
-
-/// Returns the effects that may be caused.
-fn effects(allowed: Option<Allowed>) -> Vec<Effect> {
-    let all = [
-        Effect::Read,
-        Effect::Config,
-        Effect::Motion,
-        Effect::Unknown,
-    ];
-    let may = |effect: &Effect| Allowed::needed(*effect) <= allowed;
-    all.into_iter().filter(may).collect()
 }
 
 fn show(format: OutputFormat, trial: &Trial) {

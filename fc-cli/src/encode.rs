@@ -4,15 +4,14 @@ use std::io::Write as _;
 
 use clap::ValueEnum;
 use clap_complete::ArgValueCompleter;
-use fc_reflect::sample::Profile;
-use fc_reflect::{Direction, Error, Packing, Reflector};
-use fc_spec::model::{Kind, Model};
-use fc_workshop::arguments::Arguments;
+use fc_reflect::{Direction, Packing, Reflector};
+use fc_spec::model::Model;
 use fc_workshop::decode::hex;
+use fc_workshop::request::frame;
 
-use crate::call::read_json;
+use crate::call::values;
 use crate::complete;
-use crate::lang::{both, said};
+use crate::lang::both;
 use crate::outcome::{Failure, Status};
 use crate::print;
 
@@ -78,59 +77,14 @@ impl From<Side> for Direction {
 }
 
 pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
-    let reflector = Reflector::new(model);
-    let name = &options.name;
-    let Some(operation) = model.operation(name) else {
-        return Err(said!(
-            "没有接口 `{name}`；`fcproto codes` 列出全部接口",
-            "there is no operation `{name}`; `fcproto codes` lists them"
-        )
-        .into());
-    };
-    let direction = options.side.into();
-    let Some(id) = reflector.id(operation, direction, options.id) else {
-        return Err(said!(
-            "`{name}` 还没有功能码，不能组成一帧",
-            "`{name}` has no code yet, so it has no frame"
-        )
-        .into());
-    };
     let packing = if options.gzip {
         Packing::Gzip { level: LEVEL }
     } else {
         Packing::Plain
     };
-    let body = match (&options.json, options.arguments.as_slice()) {
-        (Some(text), _) => Some(read_json(text)?),
-        (None, []) => None,
-        (None, arguments) => {
-            let Some(body) = operation.body(direction) else {
-                return Err(said!(
-                    "`{name}` 这一侧没有 JSON 正文，不能带值",
-                    "this side of `{name}` has no JSON body; leave out the values"
-                )
-                .into());
-            };
-            let arguments = arguments.iter().map(String::as_str);
-            Some(Arguments::new(model).object(&body.ty, arguments)?)
-        }
-    };
-    let data = match body {
-        None => reflector.samples().data(operation, direction),
-        Some(body) if operation.kind() == Kind::Stream => body.to_string().into(),
-        Some(body) => {
-            let samples = reflector.samples();
-            let message = samples.enveloped(direction, body, Profile::Example);
-            message.to_string().into()
-        }
-    };
-    let frame = match reflector.encode(id, &data, packing) {
-        Ok(frame) => frame,
-        Err(Error::Body { error, .. }) => {
-            return Err(said!("正文不合规范：{error}", "the body breaks the spec: {error}").into());
-        }
-        Err(Error::Frame(error)) => return Err(error.to_string().into()),
-    };
+    let values = values(options.json.as_deref(), &options.arguments)?;
+    let side = (options.side.into(), options.id);
+    let frame = frame(&Reflector::new(model), &options.name, side, values, packing)?;
     if options.binary {
         crate::progress::done();
         let mut stdout = std::io::stdout().lock();

@@ -1,6 +1,6 @@
-//! Addresses of robots, and of ports to listen on.
+//! Options for the ports to listen on.
 
-use std::net::{Ipv6Addr, SocketAddr};
+use std::net::SocketAddr;
 
 use fc_spec::model::Model;
 use fc_workshop::listen::{ListenError, Listeners};
@@ -93,23 +93,4 @@ fn allow_open_files(_robots: u16) -> Result<(), Failure> {
 /// Returns the line that names the listening ports.
 pub fn line((commands, data): (SocketAddr, SocketAddr)) -> String {
     format!("commands {commands} data {data}\n")
-}
-
-/// Adds the port to an address that has none. An IPv6 address with a port has brackets.
-pub fn with_port(address: &str, port: u16) -> String {
-    let is_bare_v6 = address.parse::<Ipv6Addr>().is_ok();
-    match address.rsplit_once(':') {
-        _ if is_bare_v6 => format!("[{address}]:{port}"),
-        Some((_, number)) if number.parse::<u16>().is_ok() => address.to_owned(),
-        _ => format!("{address}:{port}"),
-    }
-}
-
-/// Returns the address without its port, and with this port instead.
-pub fn at_port(address: &str, port: u16) -> String {
-    let whole = with_port(address, port);
-    match whole.rsplit_once(':') {
-        Some((host, _)) => format!("{host}:{port}"),
-        None => whole,
-    }
 }

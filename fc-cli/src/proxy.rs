@@ -6,6 +6,7 @@ use std::io;
 
 use fc_reflect::Reflector;
 use fc_spec::model::{HeaderRole, Model};
+use fc_workshop::address::{at_port, with_port};
 use fc_workshop::decode;
 use fc_workshop::fault::Fault;
 use fc_workshop::listen::Listeners;
@@ -15,7 +16,7 @@ use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::view::View;
 use serde_json::json;
 
-use crate::endpoint::{self, Ports, at_port, with_port};
+use crate::endpoint::{self, Ports};
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;

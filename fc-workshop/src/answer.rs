@@ -1,11 +1,12 @@
 //! The response to a call, and the process that the call has started.
 
 use crate::paths::{self, at};
-use fc_reflect::{About, Message, Node, Value};
+use fc_reflect::{About, BodyError, Frame, Message, Node, Reflector, Value};
 use fc_spec::model::{
     self, Cadence, Direction, EnvelopeRole, Exchange, Model, Operation, ResultCode, ResultRole,
     SetOff,
 };
+use std::time::Duration;
 
 /// The result in the envelope of a response.
 #[derive(Clone, Debug)]
@@ -52,6 +53,43 @@ pub(crate) fn result_code(message: &Message<'_>) -> Option<i64> {
 fn with_role<'a>(envelope: &'a [Node<'_>], role: EnvelopeRole) -> Option<&'a Value<'a>> {
     let has_role = |node: &&Node<'_>| matches!(node.about, About::Envelope(it) if it.role == role);
     envelope.iter().find(has_role).map(|node| &node.value)
+}
+
+/// A response that has been read.
+#[derive(Debug)]
+pub struct Response<'e, 'm> {
+    /// The command, or `None` if the spec has none with this code.
+    pub command: Option<&'m Operation>,
+    /// The frame.
+    pub frame: &'e Frame<'m>,
+    /// The message in the frame.
+    pub message: Message<'m>,
+    /// The result.
+    pub outcome: Outcome<'m>,
+    /// The time since the request.
+    pub took: Duration,
+}
+
+impl<'e, 'm> Response<'e, 'm> {
+    /// Reads the response to a command.
+    ///
+    /// # Errors
+    /// The error that prevents reading the envelope. The message contains an error of the body.
+    pub fn read(
+        reflector: &Reflector<'m>,
+        command: Option<&'m Operation>,
+        frame: &'e Frame<'m>,
+        took: Duration,
+    ) -> Result<Self, BodyError> {
+        let message = reflector.message(command, Direction::Response, &frame.data)?;
+        Ok(Self {
+            command,
+            frame,
+            outcome: Outcome::of(reflector.model(), &message),
+            message,
+            took,
+        })
+    }
 }
 
 /// The progress of a process after a report.

@@ -3,9 +3,11 @@
 //! **Architecture invariant.** This crate contains no fact about a protocol and does not depend on generated code. All
 //! facts come from the model, so a tool uses an edited spec at once.
 
+pub mod address;
 pub mod answer;
 pub mod app;
 pub mod arguments;
+pub mod call;
 pub mod capture;
 pub mod certify;
 pub mod client;
@@ -20,13 +22,16 @@ pub mod fault;
 pub mod listen;
 pub mod mock;
 pub mod paths;
+pub mod permission;
 pub mod proxy;
 #[cfg(feature = "record")]
 pub mod recording;
 pub mod replay;
+pub mod request;
 pub mod run;
 pub mod scenario;
 pub mod stream;
 pub mod table;
+pub mod transcript;
 #[cfg(feature = "view")]
 pub mod view;

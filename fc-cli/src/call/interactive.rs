@@ -8,9 +8,11 @@ use std::time::Duration;
 use clap::parser::ValueSource;
 use clap::{Args as _, FromArgMatches as _};
 use fc_reflect::{Frame, Reflector};
-use fc_spec::model::{Kind, Model};
+use fc_spec::model::{Kind, Model, Operation};
+use fc_workshop::call::{Call, CallError, Ending, Event};
 use fc_workshop::client::{Client, ClientError};
 use fc_workshop::complete::complete;
+use fc_workshop::request::Request;
 use fc_workshop::run::{Interrupt, block_on};
 use rustyline::completion::Completer;
 use rustyline::error::ReadlineError;
@@ -20,8 +22,7 @@ use rustyline::history::MemHistory;
 use rustyline::validate::Validator;
 use rustyline::{Config, Context, Editor, ExternalPrinter, Helper};
 
-use super::session::Call;
-use super::{Options, call, request, show};
+use super::{Options, show, status};
 use crate::help::usage;
 use crate::lang::said;
 use crate::outcome::{Failure, Status};
@@ -103,7 +104,7 @@ struct Talk<'r, 'm> {
     client: Option<Client<'m>>,
 }
 
-impl Talk<'_, '_> {
+impl<'m> Talk<'_, 'm> {
     async fn run(mut self) -> Result<Status, Failure> {
         let mut status = Status::Fine;
         let mut interrupt = Interrupt::new()?;
@@ -138,7 +139,8 @@ impl Talk<'_, '_> {
             match report {
                 Ok(frame) => {
                     if let Some(operation) = frame.operation {
-                        let text = call(self.reflector, self.options).pushed(operation, &frame);
+                        let transcript = self.options.transcript();
+                        let text = transcript.pushed(self.reflector, operation, &frame);
                         self.prompt.show(text)?;
                     }
                 }
@@ -181,34 +183,39 @@ impl Talk<'_, '_> {
             .into());
         }
         if line.list {
-            let is_json = self.options.output.format == super::OutputFormat::Json;
-            print::result(&show::list(self.reflector.model(), is_json))?;
+            let list = self.options.transcript().operations(self.reflector.model());
+            print::result(&list)?;
             return Ok(Status::Fine);
         }
-        let request = request(self.reflector, &line, line.allow.max(self.options.allow))?;
-        let outer = call(self.reflector, self.options);
+        let request = line.request(self.reflector, line.allow.max(self.options.allow))?;
+        let outer = self.options.call(self.reflector);
         let call = Call {
             repeat: line.repeat,
             timeout: line.timeout.map_or(outer.timeout, Duration::from_millis),
             follow: line.follow.map(Duration::from_secs),
             ..outer
         };
-        if request
-            .operation
-            .is_some_and(|it| it.kind() == Kind::Stream)
-        {
-            return call.run(&request).await;
+        status(self.call(&call, &request).await)
+    }
+
+    /// Sends a request. Commands share one connection.
+    async fn call(
+        &mut self,
+        call: &Call<'_, 'm>,
+        request: &Request<'m>,
+    ) -> Result<Ending, CallError> {
+        let (reflector, transcript) = (self.reflector, self.options.transcript());
+        let sink = &mut |event: Event<'_, '_>| show(reflector, transcript, &event);
+        let is_stream = |operation: &Operation| operation.kind() == Kind::Stream;
+        if request.operation.is_some_and(is_stream) {
+            return call.run(request, sink).await;
         }
         let mut client = match self.client.take() {
             Some(client) => client,
-            None => call.connect(&request).await?,
+            None => call.connect(request).await?,
         };
-        let sent = call.with(&mut client, &request).await;
-        let is_lost = |failure: &Failure| {
-            let error = failure.downcast_ref::<ClientError>();
-            error.is_some_and(ClientError::is_lost)
-        };
-        if !sent.as_ref().is_err_and(is_lost) {
+        let sent = call.send(&mut client, request, sink).await;
+        if !sent.as_ref().is_err_and(CallError::is_lost) {
             self.client = Some(client);
         }
         sent

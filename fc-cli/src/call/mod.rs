@@ -1,26 +1,27 @@
 //! `fcproto call`.
 
 mod interactive;
-mod session;
-pub mod show;
 
-use std::path::PathBuf;
+use std::io;
+use std::path::Path;
 use std::time::Duration;
 
 use clap::ValueEnum;
 use clap_complete::ArgValueCompleter;
-use fc_reflect::sample::Profile;
-use fc_reflect::{Direction, Reflector};
-use fc_spec::model::{Kind, Model, Operation, Side, Value};
-use fc_workshop::arguments::{Arguments, json};
+use fc_reflect::Reflector;
+use fc_spec::model::{Kind, Model, Operation};
+use fc_workshop::call::{Call, CallError, Ending, Event};
 use fc_workshop::facts;
+use fc_workshop::request::{Request, Values};
+use fc_workshop::run::block_on;
+use fc_workshop::transcript::Transcript;
 
-use crate::allow::{self, Allowed};
+use crate::allow::{Allowed, permission};
 use crate::complete;
 use crate::input;
-use crate::lang::{both, said};
+use crate::lang::{both, lang, said};
 use crate::new::code;
-use crate::outcome::{Failure, Status};
+use crate::outcome::{Failure, Status, unanswered};
 use crate::output::Output;
 use crate::print;
 
@@ -120,180 +121,114 @@ enum OutputFormat {
     Json,
 }
 
-/// A request that is ready to be sent.
-struct Request<'m> {
-    operation: Option<&'m Operation>,
-    kind: u8,
-    code: u16,
-    data: Vec<u8>,
-}
-
 pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     let reflector = Reflector::new(model);
     if options.interactive {
         return interactive::run(&reflector, options);
     }
     if options.list {
-        print::result(&show::list(
-            model,
-            options.output.format == OutputFormat::Json,
-        ))?;
+        print::result(&options.transcript().operations(model))?;
         return Ok(Status::Fine);
     }
-    let request = request(&reflector, options, options.allow)?;
-    fc_workshop::run::block_on(call(&reflector, options).run(&request))?
+    let request = options.request(&reflector, options.allow)?;
+    let call = options.call(&reflector);
+    let sink = &mut |event: Event<'_, '_>| show(&reflector, options.transcript(), &event);
+    status(block_on(call.run(&request, sink))?)
 }
 
-/// Returns the request of a command line.
-fn request<'m>(
-    reflector: &Reflector<'m>,
-    options: &Options,
-    allowed: Option<Allowed>,
-) -> Result<Request<'m>, Failure> {
-    let request = match &options.raw {
-        Some(raw) => raw_request(reflector.model(), raw)?,
-        None => named_request(reflector, options)?,
-    };
-    allow::check(request.operation, allowed)?;
-    Ok(request)
-}
-
-/// Returns the settings of a command line.
-fn call<'r, 'm>(reflector: &'m Reflector<'m>, options: &'r Options) -> session::Call<'r, 'm> {
-    let timeout = options.timeout.map(Duration::from_millis);
-    session::Call {
-        reflector,
-        to: &options.to,
-        repeat: options.repeat,
-        timeout: timeout.unwrap_or_else(|| facts::call_timeout(reflector.model())),
-        follow: options.follow.map(Duration::from_secs),
-        shown: show::Format {
-            json: options.output.format == OutputFormat::Json,
-        },
+impl Options {
+    fn transcript(&self) -> Transcript {
+        match self.output.format {
+            OutputFormat::Text => Transcript::Text(lang()),
+            OutputFormat::Json => Transcript::Json,
+        }
     }
-}
 
-/// Composes the request of an operation and checks it.
-fn named_request<'m>(reflector: &Reflector<'m>, options: &Options) -> Result<Request<'m>, Failure> {
-    let model = reflector.model();
-    let name = options.name.as_deref().unwrap_or_default();
-    let is_callable = |operation: &&Operation| operation.kind() != Kind::Report;
-    let operation = model.operation(name).filter(is_callable).ok_or_else(|| {
-        said!(
-            "没有指令 `{name}`；`fcproto call --list` 列出全部指令",
-            "there is no command `{name}`; `fcproto call --list` shows all"
-        )
-    })?;
-    if options.follow.is_some() && operation.sets_off().is_empty() {
-        return Err(said!(
+    fn call<'r, 'm>(&'r self, reflector: &'m Reflector<'m>) -> Call<'r, 'm> {
+        let timeout = self.timeout.map(Duration::from_millis);
+        Call {
+            reflector,
+            to: &self.to,
+            repeat: self.repeat,
+            timeout: timeout.unwrap_or_else(|| facts::call_timeout(reflector.model())),
+            follow: self.follow.map(Duration::from_secs),
+        }
+    }
+
+    /// Returns the request, if it is allowed.
+    fn request<'m>(
+        &self,
+        reflector: &Reflector<'m>,
+        allowed: Option<Allowed>,
+    ) -> Result<Request<'m>, Failure> {
+        let model = reflector.model();
+        let request = if let Some([number, hex]) = self.raw.as_deref() {
+            Request::raw(model, code(number)?, hex)?
+        } else {
+            let name = self.name.as_deref().unwrap_or_default();
+            self.check_follow(model.operation(name))?;
+            let values = values(self.json.as_deref(), &self.arguments)?;
+            Request::named(reflector, name, values)?
+        };
+        permission(allowed).check(request.operation)?;
+        Ok(request)
+    }
+
+    /// Refuses to follow an operation that sets off no reports.
+    fn check_follow(&self, operation: Option<&Operation>) -> Result<(), Failure> {
+        let Some(operation) = operation.filter(|it| it.kind() != Kind::Report) else {
+            return Ok(());
+        };
+        if self.follow.is_none() || !operation.sets_off().is_empty() {
+            return Ok(());
+        }
+        let name = &operation.name;
+        Err(said!(
             "`{name}` 不引起上报，不能用 --follow",
             "`{name}` sets off no reports; leave out --follow"
         )
-        .into());
+        .into())
     }
-    let Some(id) = reflector.id(operation, Direction::Request, 0) else {
-        return Err(said!(
-            "`{name}` 还没有功能码，不能发送",
-            "`{name}` has no code yet, so it cannot be sent"
-        )
-        .into());
+}
+
+/// Returns the values of a command line. `@FILE` instead of JSON names a file.
+pub fn values(json: Option<&str>, arguments: &[String]) -> Result<Values, Failure> {
+    let Some(json) = json else {
+        return Ok(Values::Arguments(arguments.to_vec()));
     };
-    let request = |data| Request {
-        operation: Some(operation),
-        kind: id.kind,
-        code: id.code,
-        data,
-    };
-    let is_stream = operation.kind() == Kind::Stream;
-    if is_stream && operation.sender == Side::Robot {
-        if options.json.is_some() || !options.arguments.is_empty() {
-            return Err(said!(
-                "`{name}` 由机器人发送，不接受参数",
-                "the robot sends `{name}`, so it takes no arguments"
-            )
-            .into());
+    match json.strip_prefix('@') {
+        Some(file) => Ok(Values::json(&input::text(Path::new(file))?)?),
+        None => Ok(Values::json(json)?),
+    }
+}
+
+/// Prints an observation.
+fn show(
+    reflector: &Reflector<'_>,
+    transcript: Transcript,
+    event: &Event<'_, '_>,
+) -> io::Result<()> {
+    match event {
+        Event::Response(response) => print::result(&transcript.response(response)),
+        Event::Pushed(operation, frame) => {
+            print::result(&transcript.pushed(reflector, operation, frame))
         }
-        return Ok(request(Vec::new()));
+        Event::Times(times) => print::result(&transcript.times(times.clone())),
+        Event::Invalid(error) => print::error(&said!(
+            "响应不合规范：{error}",
+            "the response breaks the spec: {error}"
+        )),
     }
-    let body = operation.body(Direction::Request);
-    if is_stream && body.is_none() {
-        return Err(said!(
-            "`{name}` 的内容是字节，`call` 只发送 JSON",
-            "`{name}` has bytes, and `call` sends only JSON"
-        )
-        .into());
-    }
-    let body = match (&options.json, body) {
-        (Some(text), _) => read_json(text)?,
-        (None, Some(body)) => {
-            let arguments = options.arguments.iter().map(String::as_str);
-            Arguments::new(model).object(&body.ty, arguments)?
-        }
-        (None, None) => Value::Object(Vec::new()),
-    };
-    let data = if is_stream {
-        body
-    } else {
-        let samples = reflector.samples();
-        let mut message = samples.enveloped(Direction::Request, body, Profile::Example);
-        facts::stamp(model, Direction::Request, &mut message);
-        message
-    };
-    let data = data.to_string();
-    let checked = reflector.message(Some(operation), Direction::Request, data.as_bytes());
-    let text = checked.and_then(|message| message.canonical());
-    let text = text.map_err(|error| show::breaks_the_spec(model, operation, &error))?;
-    Ok(request(text.into_bytes()))
 }
 
-/// Reads the JSON object of an option, or the file that it names.
-pub fn read_json(text: &str) -> Result<Value, Failure> {
-    let text = match text.strip_prefix('@') {
-        Some(file) => input::text(&PathBuf::from(file))?,
-        None => text.to_owned(),
-    };
-    let value = json(&text).filter(|value| matches!(value, Value::Object(_)));
-    value.ok_or_else(|| {
-        said!(
-            "`--json` 应为一个 JSON 对象",
-            "`--json` needs a JSON object"
-        )
-        .into()
-    })
-}
-
-fn raw_request<'m>(model: &'m Model, raw: &[String]) -> Result<Request<'m>, Failure> {
-    let [number, hex] = raw else {
-        return Err(said!("`--raw` 应有功能码和字节", "`--raw` needs a code and bytes").into());
-    };
-    let number = code(number)?;
-    let data = bytes(hex).ok_or_else(|| {
-        said!(
-            "`{hex}` 不是十六进制字节，例如 `7b7d`",
-            "`{hex}` is not bytes in hexadecimal, such as `7b7d`"
-        )
-    })?;
-    let is_it = |operation: &&Operation| {
-        operation.kind() == Kind::Command && operation.code.value == Some(number)
-    };
-    Ok(Request {
-        operation: model.operations.iter().find(is_it),
-        kind: model.frame.kinds.command.value,
-        code: number,
-        data,
-    })
-}
-
-fn bytes(hex: &str) -> Option<Vec<u8>> {
-    let digits: Vec<u8> = hex
-        .chars()
-        .filter(|it| !it.is_whitespace())
-        .map(|it| it.to_digit(16).and_then(|digit| u8::try_from(digit).ok()))
-        .collect::<Option<_>>()?;
-    let pairs = digits.chunks_exact(2);
-    if !pairs.remainder().is_empty() {
-        return None;
+/// Returns the status of a call. A robot that does not answer is no failure.
+fn status(called: Result<Ending, CallError>) -> Result<Status, Failure> {
+    match called {
+        Ok(Ending::Success) => Ok(Status::Fine),
+        Ok(Ending::Refused) => Ok(Status::Refused),
+        Ok(Ending::Invalid) => Ok(Status::Unanswered),
+        Err(CallError::Client(error)) => unanswered(error.into()),
+        Err(CallError::Frame(error)) => Err(error.into()),
+        Err(CallError::Sink(error)) => Err(error.into()),
     }
-    let byte = |pair: &[u8]| pair.iter().fold(0, |byte, digit| byte << 4 | digit);
-    Some(pairs.map(byte).collect())
 }

@@ -4,18 +4,18 @@ use std::io::stdin;
 use std::thread;
 use std::time::Duration;
 
-use fc_reflect::{Direction, Reflector};
-use fc_spec::model::{Kind, Model, Operation, Side};
-use fc_workshop::answer::Outcome;
+use fc_reflect::Reflector;
+use fc_spec::model::{Kind, Model, Side};
+use fc_workshop::address::{at_port, with_port};
+use fc_workshop::answer::Response;
 use fc_workshop::app::{App, Event, Settings};
 use fc_workshop::facts;
 use fc_workshop::run::{Interrupt, block_on};
 use fc_workshop::scenario::{Expected, Scenario};
+use fc_workshop::transcript::Transcript;
 use tokio::sync::mpsc::{Receiver, channel};
 
-use crate::allow::{self, Allowed};
-use crate::call::show::{Format, summary};
-use crate::endpoint::{at_port, with_port};
+use crate::allow::{Allowed, permission};
 use crate::lang::{both, in_lang, lang, said};
 use crate::outcome::{Failure, Status, unanswered};
 use crate::print;
@@ -95,7 +95,11 @@ pub fn run(
         };
         let steps = options.app.step.then(steps);
         let mut interrupt = Interrupt::new()?;
-        let sink = &mut |event: Event<'_, '_>| show(reflector, options.app.format, &event);
+        let transcript = match options.app.format {
+            OutputFormat::Text => Transcript::Text(lang()),
+            OutputFormat::Json => Transcript::Json,
+        };
+        let sink = &mut |event: Event<'_, '_>| show(reflector, transcript, &event);
         let deviations = app.run(&scenario, steps, sink, interrupt.next()).await?;
         if options.expect && deviations == 0 {
             print::done(&said!(
@@ -126,7 +130,7 @@ fn allowed(model: &Model, allow: Option<Allowed>) -> impl Iterator<Item = String
         operation.kind() == Kind::Command
             && operation.sender == Side::App
             && operation.code.value.is_some()
-            && allow::check(Some(operation), allow).is_ok()
+            && permission(allow).check(Some(operation)).is_ok()
     });
     commands.map(|command| command.name.clone())
 }
@@ -135,7 +139,7 @@ fn allowed(model: &Model, allow: Option<Allowed>) -> impl Iterator<Item = String
 fn check(model: &Model, scenario: &Scenario, allow: Option<Allowed>) -> Result<(), Failure> {
     for expected in &scenario.expect {
         if let Expected::Request(name, _) = expected {
-            allow::check(model.operation(name), allow)?;
+            permission(allow).check(model.operation(name))?;
         }
     }
     Ok(())
@@ -143,52 +147,24 @@ fn check(model: &Model, scenario: &Scenario, allow: Option<Allowed>) -> Result<(
 
 fn show(
     reflector: &Reflector<'_>,
-    shown: OutputFormat,
+    transcript: Transcript,
     event: &Event<'_, '_>,
 ) -> std::io::Result<()> {
-    let format = Format {
-        json: shown == OutputFormat::Json,
-    };
-    let line = match event {
-        Event::Waits(name) => {
-            return print::message(&said!(
-                "下一条：`{name}`，按回车发送\n",
-                "next: `{name}`, press Enter to send it\n"
-            ));
-        }
+    match event {
+        Event::Waits(name) => print::message(&said!(
+            "下一条：`{name}`，按回车发送\n",
+            "next: `{name}`, press Enter to send it\n"
+        )),
         Event::Response(command, frame, took) => {
-            let message = reflector.message(Some(command), Direction::Response, &frame.data);
-            // A deviation follows.
-            let Ok(message) = message else { return Ok(()) };
-            let outcome = Outcome::of(reflector.model(), &message);
-            let name = command.name.as_str();
-            match shown {
-                OutputFormat::Json => format.response(Some(name), frame, &outcome, &message, *took),
-                OutputFormat::Text => summary(name, &outcome) + "\n",
-            }
+            let response = Response::read(reflector, Some(*command), frame, *took);
+            // A deviation follows the response that cannot be read.
+            response.map_or(Ok(()), |it| print::result(&transcript.result(&it)))
         }
-        Event::Pushed(frame) => match (frame.operation, shown) {
-            (Some(operation), OutputFormat::Json) => format.pushed(operation, frame, None),
-            (Some(operation), OutputFormat::Text) => named(operation, frame.data.len()),
-            (None, _) => bytes(&format!("0x{:04X}", frame.id.code), frame.data.len()),
-        },
+        Event::Pushed(frame) => print::result(&transcript.arrival(frame)),
         Event::Deviation(name, deviation) => {
             let deviation = in_lang(deviation);
             let _ = print::error(&said!("`{name}`：{deviation}", "`{name}`: {deviation}"));
-            return Ok(());
+            Ok(())
         }
-    };
-    print::result(&line)
-}
-
-fn named(operation: &Operation, count: usize) -> String {
-    let (name, title) = (&operation.name, lang().text(&operation.title));
-    if operation.kind() == Kind::Report {
-        return format!("{name}  {title}\n");
     }
-    bytes(&format!("{name}  {title}"), count)
-}
-
-fn bytes(name: &str, count: usize) -> String {
-    said!("{name}  {count} 字节\n", "{name}  {count} bytes\n")
 }

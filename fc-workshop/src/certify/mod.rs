@@ -21,7 +21,8 @@ pub use html::page as html;
 pub use json::{line as json_line, text as json};
 pub use robot::robot;
 
-use fc_spec::model::{Effect, Text};
+use crate::permission::Permission;
+use fc_spec::model::Text;
 use std::time::{Duration, SystemTime};
 
 /// The settings of a certification.
@@ -29,8 +30,8 @@ use std::time::{Duration, SystemTime};
 pub struct Settings {
     /// Address of the device's command port.
     pub address: String,
-    /// The effects of the commands that are sent.
-    pub allowed: Vec<Effect>,
+    /// The largest effect of the commands that are sent.
+    pub permission: Permission,
     /// Names of the trials to run, or all if empty. A name ends at a dot, such as `call` for `call.get_level`.
     pub only: Vec<String>,
 }

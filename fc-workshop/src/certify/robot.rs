@@ -110,10 +110,7 @@ async fn all(reflector: &Reflector<'_>, settings: &Settings, run: &mut Run<'_>) 
             && operation.sender == Side::App
             && operation.code.value.is_some()
     };
-    let is_allowed = |command: &&Operation| {
-        let mut allowed = settings.allowed.iter();
-        allowed.any(|effect| command.effect() == Some(*effect))
-    };
+    let is_allowed = |command: &&Operation| settings.permission.check(Some(command)).is_ok();
     let commands = model.operations.iter().filter(is_command);
     let mut stage = Stage {
         reflector,

@@ -2,12 +2,13 @@
 
 use crate::support::small_with;
 use fc_reflect::{Direction, Frame, FrameFault, FrameId, Packing, Reflector};
-use fc_spec::model::{Effect, HeaderRole, Model, ResultRole, Value};
+use fc_spec::model::{Effect, Exchange, HeaderRole, Model, ResultRole, Value};
 use fc_workshop::arguments::json;
 use fc_workshop::certify::{self, Certificate, Outcome, Settings, Trial};
 use fc_workshop::client::Client;
 use fc_workshop::listen::Listeners;
 use fc_workshop::mock::{self, Mock};
+use fc_workshop::permission::Permission;
 use fc_workshop::run::block_on;
 use fc_workshop::stream::{FrameStream, Piece};
 use futures_util::stream::{FuturesUnordered, StreamExt};
@@ -257,7 +258,7 @@ fn certify_broken(model: &Model, way: Break) -> Vec<Trial> {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let settings = Settings {
             address: listener.local_addr().unwrap().to_string(),
-            allowed: vec![Effect::Read, Effect::Config],
+            permission: Permission::Config,
             only: Vec::new(),
         };
         let breaker = Breaker {
@@ -341,12 +342,17 @@ fn certificate_with_a_failed_trial() {
 
 #[test]
 fn a_trial_without_commands_is_skipped() {
-    let model = model();
+    let mut model = model();
+    for operation in &mut model.operations {
+        if let Exchange::Command { effect, .. } = &mut operation.exchange {
+            *effect = Effect::Motion;
+        }
+    }
     let mock = Mock::start(model.clone(), mock::Settings::default()).unwrap();
     let reflector = Reflector::new(&model);
     let settings = Settings {
         address: mock.commands().to_string(),
-        allowed: Vec::new(),
+        permission: Permission::Read,
         only: vec!["frame".to_owned()],
     };
     let mut told = |_: &Trial| {};
