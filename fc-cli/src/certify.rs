@@ -8,14 +8,14 @@ use fc_codegen::inspect::fingerprint;
 use fc_reflect::Reflector;
 use fc_spec::model::Model;
 use fc_workshop::address::with_port;
-use fc_workshop::certify::{self, Certificate, Outcome, Settings, Trial};
+use fc_workshop::certify::{self, Certificate, Settings, Trial};
 use fc_workshop::client::Client;
 use fc_workshop::facts;
 use fc_workshop::run::{Interrupt, block_on};
 
 use crate::allow::{Allowed, permission};
 use crate::endpoint::{self, Ports};
-use crate::lang::{both, in_lang, said};
+use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status, unanswered, unwritable};
 use crate::output::Output;
 use crate::print;
@@ -159,16 +159,9 @@ fn test_app(reflector: &Reflector<'_>, options: &Options) -> Result<Option<Teste
 }
 
 fn show(format: OutputFormat, trial: &Trial) {
-    let (result, reason) = match &trial.outcome {
-        Outcome::Passed => (both("通过", "passed"), None),
-        Outcome::Failed(failure) => (both("失败", "FAILED"), Some(&failure.reason)),
-        Outcome::Skipped(reason) => (both("跳过", "skipped"), Some(reason)),
-    };
-    let line = if format == OutputFormat::Json {
-        certify::json_line(trial)
-    } else {
-        let reason = reason.map(|reason| format!(": {}", in_lang(reason)));
-        format!("{result}  {}{}", trial.name, reason.unwrap_or_default())
+    let line = match format {
+        OutputFormat::Text => trial.line(lang()),
+        OutputFormat::Json => certify::json_line(trial),
     };
     // A reader that has gone ends the program at its next output.
     let _ = print::result(&(line + "\n"));

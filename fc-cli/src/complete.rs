@@ -5,16 +5,13 @@ use std::ffi::{OsStr, OsString};
 use clap::ArgMatches;
 use clap_complete::CompletionCandidate;
 use fc_spec::model::Model;
-use fc_workshop::complete::complete;
+use fc_workshop::complete::{complete, complete_nested};
 
 use crate::help::described;
 use crate::lang::lang;
 use crate::print;
 use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
-
-/// The levels of nested keys that one completion offers.
-const LEVELS: usize = 4;
 
 /// Returns the operations that begin with a word.
 pub fn operations(word: &OsStr) -> Vec<CompletionCandidate> {
@@ -39,23 +36,12 @@ pub fn call(word: &OsStr) -> Vec<CompletionCandidate> {
     let key = before.pop_if(|word| is_key && !word.contains('='));
     let before: Vec<&str> = before.iter().map(String::as_str).collect();
     let Some(key) = key else {
-        return candidates(&model, keys(&model, &before, text, LEVELS), word);
+        return candidates(&model, complete_nested(&model, &before, text), word);
     };
     let values = complete(&model, &before, &format!("{key}={text}"));
     let values = values.iter().filter_map(|it| it.split_once('='));
     let values = values.map(|(_, value)| value.to_owned());
     candidates(&model, values.collect(), word)
-}
-
-/// Returns the completions of a word, with nested keys in full.
-fn keys(model: &Model, before: &[&str], word: &str, levels: usize) -> Vec<String> {
-    let found = complete(model, before, word).into_iter();
-    let whole = found.flat_map(|found| match (found.ends_with('.'), levels) {
-        (false, _) => vec![found],
-        (true, 0) => Vec::new(),
-        (true, _) => keys(model, before, &found, levels - 1),
-    });
-    whole.collect()
 }
 
 /// Returns candidates with the title of each operation.

@@ -6,10 +6,10 @@ use clap::ValueEnum;
 use clap_complete::ArgValueCompleter;
 use fc_reflect::Reflector;
 use fc_spec::model::Model;
-use fc_workshop::decode::{self, Record};
+use fc_workshop::decode::{self, Filter, Record};
 
 use crate::complete;
-use crate::lang::{both, lang, said};
+use crate::lang::{both, lang};
 use crate::new::code;
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
@@ -64,7 +64,12 @@ enum Only {
 }
 
 pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
-    let filter = Filter::new(model, options)?;
+    let filter = Filter {
+        codes: options.codes.clone(),
+        ids: options.ids.clone(),
+        only_errors: options.only.is_some(),
+        ..Filter::new(model, &options.names, &options.results)?
+    };
     let reflector = Reflector::new(model);
     let mut printer = Printer {
         model,
@@ -81,66 +86,11 @@ pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
     Ok(printer.status)
 }
 
-/// Selects records.
-struct Filter<'o> {
-    options: &'o Options,
-    results: Vec<i64>,
-}
-
-impl<'o> Filter<'o> {
-    fn new(model: &Model, options: &'o Options) -> Result<Self, Failure> {
-        for name in &options.names {
-            if model.operation(name).is_none() {
-                return Err(said!(
-                    "没有接口 `{name}`；`fcproto codes` 列出全部接口",
-                    "there is no operation `{name}`; `fcproto codes` lists them"
-                )
-                .into());
-            }
-        }
-        let result = |name: &String| {
-            let known = model.results.iter().find(|result| result.name == *name);
-            let code = known
-                .map(|result| result.code)
-                .or_else(|| name.parse().ok());
-            code.ok_or_else(|| {
-                said!(
-                    "没有结果 `{name}`；写结果码，或规范中的名称",
-                    "there is no result `{name}`; write a code, or a name of the spec"
-                )
-                .into()
-            })
-        };
-        let results: Result<_, Failure> = options.results.iter().map(result).collect();
-        Ok(Self {
-            options,
-            results: results?,
-        })
-    }
-
-    fn wants(&self, record: &Record<'_>) -> bool {
-        let Options {
-            codes, names, ids, ..
-        } = self.options;
-        let name = record.operation.map(|operation| &operation.name);
-        (self.options.only.is_none() || record.error.is_some())
-            && has(codes, record.id.map(|id| id.code).as_ref())
-            && has(ids, record.id.map(|id| id.id).as_ref())
-            && has(names, name)
-            && has(&self.results, record.result().as_ref())
-    }
-}
-
-/// Returns `true` if a list has a value. An empty list has every value.
-fn has<T: PartialEq>(wanted: &[T], value: Option<&T>) -> bool {
-    wanted.is_empty() || value.is_some_and(|value| wanted.contains(value))
-}
-
 /// Prints the records that a filter selects.
 struct Printer<'o, 'm> {
     model: &'m Model,
     options: &'o Options,
-    filter: Filter<'o>,
+    filter: Filter,
     out: BufWriter<StdoutLock<'static>>,
     has_shown: bool,
     status: Status,

@@ -8,10 +8,6 @@ use fc_workshop::listen::{ListenError, Listeners};
 use crate::lang::{both, said};
 use crate::outcome::Failure;
 
-/// Open files of the program besides its connections.
-#[cfg(unix)]
-const OTHER_FILES: u64 = 64;
-
 /// Options that name the ports to listen on.
 #[derive(Debug, clap::Args)]
 pub struct Ports {
@@ -55,39 +51,8 @@ impl Ports {
             )
             .into());
         }
-        allow_open_files(count)?;
-        let mut robots = Vec::new();
-        for _ in 0..count {
-            robots.push(Listeners::bind(&self.host, 0, 0).await?);
-        }
-        Ok(robots)
+        Ok(Listeners::bind_robots(&self.host, count).await?)
     }
-}
-
-/// Raises the limit of open files to the need of some robots: two ports and two connections each.
-#[cfg(unix)]
-fn allow_open_files(robots: u16) -> Result<(), Failure> {
-    use nix::sys::resource::{Resource, getrlimit, setrlimit};
-
-    let needed = u64::from(robots) * 4 + OTHER_FILES;
-    let (soft, hard) = getrlimit(Resource::RLIMIT_NOFILE)?;
-    if soft >= needed {
-        return Ok(());
-    }
-    if hard < needed {
-        return Err(said!(
-            "{robots} 台机器人需要打开 {needed} 个文件，系统允许 {hard} 个；提高上限（`ulimit -Hn`），或减小 --count",
-            "{robots} robots need {needed} open files, and the system allows {hard}; raise the limit (`ulimit -Hn`), or lower --count"
-        )
-        .into());
-    }
-    Ok(setrlimit(Resource::RLIMIT_NOFILE, needed, hard)?)
-}
-
-/// Windows has no such limit.
-#[cfg(not(unix))]
-fn allow_open_files(_robots: u16) -> Result<(), Failure> {
-    Ok(())
 }
 
 /// Returns the line that names the listening ports.

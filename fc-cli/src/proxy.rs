@@ -5,15 +5,14 @@ use std::cell::RefCell;
 use std::io;
 
 use fc_reflect::Reflector;
-use fc_spec::model::{HeaderRole, Model};
+use fc_spec::model::Model;
 use fc_workshop::address::{at_port, with_port};
-use fc_workshop::decode;
 use fc_workshop::fault::Fault;
 use fc_workshop::listen::Listeners;
-use fc_workshop::proxy::{Event, Settings, Sink, serve};
+use fc_workshop::proxy::{self, Event, Settings, Sink, serve};
 use fc_workshop::run::{Interrupt, block_on};
 #[cfg(feature = "view")]
-use fc_workshop::view::View;
+use fc_workshop::view::{self, View};
 use serde_json::json;
 
 use crate::endpoint::{self, Ports};
@@ -101,9 +100,9 @@ async fn forward(model: &Model, options: &Options, settings: &Settings) -> Resul
     if options.view {
         let title = endpoint::line(addresses);
         let view = &RefCell::new(View::new(model, lang(), title.trim_end().to_owned()));
-        let sink = &mut crate::view::sink(view);
+        let sink = &mut view::sink(view);
         let mut left = Ok(());
-        let end = async { left = crate::view::show(view, &mut interrupt).await };
+        let end = async { left = view::show(view, &mut interrupt).await };
         relay(model, options, settings, listeners, sink, end).await?;
         left?;
         return Ok(Status::Fine);
@@ -148,31 +147,9 @@ fn seed(seed: u64, format: OutputFormat) -> String {
 
 fn show(model: &Model, format: OutputFormat, event: &Event<'_, '_>) -> io::Result<()> {
     let line = match (event, format) {
-        (Event::Record(record), OutputFormat::Json) => decode::json(record),
-        (Event::Record(record), OutputFormat::Text) => decode::line(record, model, lang()),
-        (Event::Faults { flow, id, kinds }, format) => {
-            let kinds: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
-            let code = format!("0x{:04X}", id.code);
-            let id = id.id;
-            if format == OutputFormat::Json {
-                let flow = flow.to_string();
-                json!({ "connection": flow, "code": code, "msg_id": id, "faults": kinds })
-                    .to_string()
-            } else {
-                let (fault, kinds) = (both("故障", "fault"), kinds.join(", "));
-                let key = model.frame.field(HeaderRole::Id);
-                let key = key.map_or("id", |field| field.wire.as_str());
-                format!("  {fault} {code} · {kinds} · {key} {id} · {flow}")
-            }
-        }
-        (Event::Unreachable(address, error), _) => {
-            let error = said!(
-                "无法连接机器人 {address}：{error}",
-                "cannot connect to the robot {address}: {error}"
-            );
-            let _ = print::error(&error);
-            return Ok(());
-        }
+        (Event::Unreachable(..), _) => return print::error(&proxy::line(event, model, lang())),
+        (_, OutputFormat::Json) => proxy::json_line(event),
+        (_, OutputFormat::Text) => proxy::line(event, model, lang()),
     };
     print::result(&(line + "\n"))
 }

@@ -4,6 +4,9 @@ use crate::paths::{self, shapes};
 use fc_spec::model::{Direction, Field, Kind, Model, StructRef, Type};
 use std::collections::HashSet;
 
+/// The levels of nested keys that one completion offers.
+const LEVELS: usize = 4;
+
 /// Returns the completions of a word, which comes after the words in `before`.
 #[must_use]
 pub fn complete(model: &Model, before: &[&str], word: &str) -> Vec<String> {
@@ -22,6 +25,22 @@ pub fn complete(model: &Model, before: &[&str], word: &str) -> Vec<String> {
         Some((key, start)) => values(model, &body.ty, key, start),
         None => keys(model, &body.ty, word),
     }
+}
+
+/// Returns the completions of a word, with nested keys in full.
+#[must_use]
+pub fn complete_nested(model: &Model, before: &[&str], word: &str) -> Vec<String> {
+    nested(model, before, word, LEVELS)
+}
+
+fn nested(model: &Model, before: &[&str], word: &str, levels: usize) -> Vec<String> {
+    let found = complete(model, before, word).into_iter();
+    let whole = found.flat_map(|found| match (found.ends_with('.'), levels) {
+        (false, _) => vec![found],
+        (true, 0) => Vec::new(),
+        (true, _) => nested(model, before, &found, levels - 1),
+    });
+    whole.collect()
 }
 
 /// Returns the keys that begin with a word, each up to the next dot or the equals sign.

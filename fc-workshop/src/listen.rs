@@ -21,7 +21,16 @@ pub enum ListenError {
         /// Reason.
         error: io::Error,
     },
-    /// The system gives no thread, timer or address.
+    /// The system allows too few open files for so many robots.
+    OpenFiles {
+        /// Number of robots.
+        robots: u16,
+        /// The number of files that they need.
+        needed: u64,
+        /// The number that the system allows.
+        allowed: u64,
+    },
+    /// The system gives no thread, timer, address or limit.
     System(io::Error),
 }
 
@@ -33,6 +42,14 @@ impl ListenError {
             Self::Address { address, error } => text!(
                 "无法监听 {address}：{error}；换一个端口，0 表示任意空闲端口",
                 "cannot listen on {address}: {error}; choose another port, or 0 for any free port"
+            ),
+            Self::OpenFiles {
+                robots,
+                needed,
+                allowed,
+            } => text!(
+                "{robots} 台机器人需要打开 {needed} 个文件，系统允许 {allowed} 个；提高上限（`ulimit -Hn`），或减小 --count",
+                "{robots} robots need {needed} open files, and the system allows {allowed}; raise the limit (`ulimit -Hn`), or lower --count"
             ),
             Self::System(error) => {
                 text!("无法开始监听：{error}", "cannot start to listen: {error}")
@@ -62,6 +79,19 @@ impl Listeners {
         })
     }
 
+    /// Listens on free ports for a number of robots. Raises the limit of open files of this process to their need.
+    ///
+    /// # Errors
+    /// [`ListenError`].
+    pub async fn bind_robots(host: &str, count: u16) -> Result<Vec<Self>, ListenError> {
+        allow_open_files(count)?;
+        let mut robots = Vec::new();
+        for _ in 0..count {
+            robots.push(Self::bind(host, 0, 0).await?);
+        }
+        Ok(robots)
+    }
+
     /// Returns the addresses of the command port and the data port.
     ///
     /// # Errors
@@ -87,6 +117,36 @@ pub(crate) async fn accept(listener: &TcpListener) -> TcpStream {
             Err(_) => sleep(PAUSE).await,
         }
     }
+}
+
+/// Raises the limit of open files to the need of some robots: two ports and two connections each.
+#[cfg(unix)]
+fn allow_open_files(robots: u16) -> Result<(), ListenError> {
+    use nix::sys::resource::{Resource, getrlimit, setrlimit};
+
+    /// Open files of a program besides its connections.
+    const OTHER_FILES: u64 = 64;
+
+    let system = |error: nix::Error| ListenError::System(error.into());
+    let needed = u64::from(robots) * 4 + OTHER_FILES;
+    let (soft, hard) = getrlimit(Resource::RLIMIT_NOFILE).map_err(system)?;
+    if soft >= needed {
+        return Ok(());
+    }
+    if hard < needed {
+        return Err(ListenError::OpenFiles {
+            robots,
+            needed,
+            allowed: hard,
+        });
+    }
+    setrlimit(Resource::RLIMIT_NOFILE, needed, hard).map_err(system)
+}
+
+/// Windows has no such limit.
+#[cfg(not(unix))]
+fn allow_open_files(_robots: u16) -> Result<(), ListenError> {
+    Ok(())
 }
 
 async fn listen(host: &str, port: u16) -> Result<TcpListener, ListenError> {

@@ -22,7 +22,7 @@ pub use json::{line as json_line, text as json};
 pub use robot::robot;
 
 use crate::permission::Permission;
-use fc_spec::model::Text;
+use fc_spec::model::{Lang, Text};
 use std::time::{Duration, SystemTime};
 
 /// The settings of a certification.
@@ -90,6 +90,20 @@ pub struct Certificate {
     pub only: Vec<String>,
     /// The trials in their order.
     pub trials: Vec<Trial>,
+}
+
+impl Trial {
+    /// Returns the name, the result and its reason as a line, without the end of the line.
+    #[must_use]
+    pub fn line(&self, lang: Lang) -> String {
+        let (result, reason) = match &self.outcome {
+            Outcome::Passed => (lang.pick("通过", "passed"), None),
+            Outcome::Failed(failure) => (lang.pick("失败", "FAILED"), Some(&failure.reason)),
+            Outcome::Skipped(reason) => (lang.pick("跳过", "skipped"), Some(reason)),
+        };
+        let reason = reason.map(|reason| format!(": {}", lang.text(reason)));
+        format!("{result}  {}{}", self.name, reason.unwrap_or_default())
+    }
 }
 
 impl Certificate {

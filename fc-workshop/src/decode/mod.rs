@@ -5,6 +5,7 @@
 //! ```
 
 mod error_text;
+mod filter;
 mod hex;
 mod input;
 mod json;
@@ -14,6 +15,7 @@ mod source;
 mod text;
 
 pub use error_text::text as error_text;
+pub use filter::Filter;
 pub use input::Format;
 pub use json::line as json;
 pub(crate) use json::milliseconds;

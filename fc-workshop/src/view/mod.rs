@@ -6,10 +6,13 @@
 //! ```
 
 mod draw;
+mod terminal;
 mod traffic;
 
+pub use terminal::{show, sink};
+
 use crate::decode::{self, Decoder, Record};
-use crate::proxy::Event;
+use crate::proxy::{Event, unreachable};
 use fc_reflect::Reflector;
 use fc_spec::model::{Lang, Model};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -102,10 +105,7 @@ impl<'m> View<'m> {
             }
             Event::Faults { flow, id, kinds } => self.traffic.add_faults(*flow, *id, kinds),
             Event::Unreachable(address, error) => {
-                self.problem = Some(match self.lang {
-                    Lang::Zh => format!("无法连接机器人 {address}：{error}"),
-                    Lang::En => format!("cannot connect to the robot {address}: {error}"),
-                });
+                self.problem = Some(self.lang.text(&unreachable(address, error)).to_owned());
             }
         }
     }

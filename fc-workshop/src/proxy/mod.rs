@@ -5,6 +5,10 @@
 //!                 └─► Decoder ──► Event::Record
 //! ```
 
+mod text;
+
+pub use text::{json_line, line, unreachable};
+
 use crate::capture::Flow;
 use crate::decode::{Decoder, Record};
 use crate::facts;
