@@ -35,7 +35,7 @@ enum Part {
 /// An area, the part of its files that counts, and its paths from the root of the project.
 type Area = (&'static str, Part, &'static [&'static str]);
 
-const AREAS: [Area; 31] = [
+const AREAS: [Area; 32] = [
     (
         "documents",
         Part::Prose,
@@ -53,6 +53,7 @@ const AREAS: [Area; 31] = [
             "fc-diff/README.md",
             "fc-generated/README.md",
             "fc-lsp/README.md",
+            "fc-package/README.md",
             "fc-reflect/README.md",
             "fc-runtime/README.md",
             "fc-spec/README.md",
@@ -81,7 +82,11 @@ const AREAS: [Area; 31] = [
             "fc-diff/src/rules/explain",
         ],
     ),
-    ("messages", Part::Literals, &["fc-spec/src", "fc-diff/src"]),
+    (
+        "messages",
+        Part::Literals,
+        &["fc-spec/src", "fc-diff/src", "fc-package/src"],
+    ),
     ("help", Part::Literals, &["fc-cli/src", "fc-lsp/src"]),
     ("help of commands", Part::Prose, &["fc-cli/src/help/texts"]),
     (
@@ -96,6 +101,7 @@ const AREAS: [Area; 31] = [
             "fc-diff",
             "fc-generated",
             "fc-lsp",
+            "fc-package",
             "fc-reflect",
             "fc-runtime",
             "fc-spec",
@@ -129,6 +135,7 @@ const AREAS: [Area; 31] = [
         &["fc-generated"],
     ),
     ("comments of fc-lsp", Part::Comments, &["fc-lsp"]),
+    ("comments of fc-package", Part::Comments, &["fc-package"]),
     ("comments of fc-reflect", Part::Comments, &["fc-reflect"]),
     ("comments of fc-runtime", Part::Comments, &["fc-runtime"]),
     ("comments of fc-spec", Part::Comments, &["fc-spec"]),

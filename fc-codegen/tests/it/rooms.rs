@@ -197,6 +197,25 @@ const CRATES: &[Crate] = &[
         upwards: &[],
     },
     Crate {
+        name: "fc-package",
+        rooms: &[
+            "error",
+            "files",
+            "tool",
+            "sums",
+            "sbom",
+            "language",
+            "job",
+            "maven",
+            "rust",
+            "typescript",
+            "python",
+            "kotlin",
+            "cpp",
+        ],
+        upwards: &[],
+    },
+    Crate {
         name: "fc-derive",
         rooms: &[
             "errors",

@@ -10,11 +10,12 @@ use std::fs;
 use std::path::Path;
 
 /// The directories to search.
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 8] = [
     "fc-cli/src",
     "fc-codegen/src",
     "fc-diff/src",
     "fc-lsp/src",
+    "fc-package/src",
     "fc-reflect/src",
     "fc-workshop/src",
     "fc-spec/src",

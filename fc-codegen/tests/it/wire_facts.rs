@@ -19,13 +19,14 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Handwritten sources: a file or a whole directory, and the endings that count.
-const SOURCES: [(&str, &[&str]); 27] = [
+const SOURCES: [(&str, &[&str]); 28] = [
     ("fc-cli/src", &["rs"]),
     ("fc-codegen/src", &["rs", "j2"]),
     ("fc-derive/src", &["rs"]),
     ("fc-diff/src", &["rs"]),
     ("fc-lsp/src", &["rs"]),
     ("editors/vscode/extension.js", &["js"]),
+    ("fc-package/src", &["rs"]),
     ("fc-reflect/src", &["rs"]),
     ("fc-workshop/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The texts to read: a file or a whole directory, and the endings that count.
-const TEXTS: [(&str, &[&str]); 62] = [
+const TEXTS: [(&str, &[&str]); 64] = [
     ("README.md", &["md"]),
     ("README.zh-CN.md", &["md"]),
     ("CONTRIBUTING.md", &["md"]),
@@ -36,6 +36,7 @@ const TEXTS: [(&str, &[&str]); 62] = [
     ("fc-diff/README.md", &["md"]),
     ("fc-generated/README.md", &["md"]),
     ("fc-lsp/README.md", &["md"]),
+    ("fc-package/README.md", &["md"]),
     ("fc-reflect/README.md", &["md"]),
     ("fc-workshop/README.md", &["md"]),
     ("fc-runtime/README.md", &["md"]),
@@ -48,6 +49,7 @@ const TEXTS: [(&str, &[&str]); 62] = [
     ("fc-generated/examples", &["rs"]),
     ("fc-diff/src", &["rs", "md"]),
     ("fc-lsp/src", &["rs"]),
+    ("fc-package/src", &["rs"]),
     ("fc-reflect/src", &["rs"]),
     ("fc-workshop/src", &["rs"]),
     ("fc-runtime/src", &["rs"]),

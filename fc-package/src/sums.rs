@@ -1,15 +1,12 @@
 //! The list of all files with their checksums, in the format of `sha256sum`.
 
+use crate::error::{PackError, unwritable};
+use crate::files;
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-
-use sha2::{Digest, Sha256};
-
-use super::files;
-use crate::input;
-use crate::outcome::{Failure, unwritable};
 
 /// The name of the list.
 const FILE: &str = "SHA256SUMS";
@@ -25,16 +22,16 @@ pub fn hex<D: Digest>(bytes: &[u8]) -> String {
 }
 
 /// Returns the SHA-256 of a file in hexadecimal.
-pub fn of_file(path: &Path) -> Result<String, Failure> {
+pub fn of_file(path: &Path) -> Result<String, PackError> {
     Ok(hex::<Sha256>(&fs::read(path)?))
 }
 
 /// Replaces the files of a language by those of another directory. Returns their paths relative to `out`.
 ///
 /// Files that the list does not name stay.
-pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, Failure> {
+pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, PackError> {
     let list = out.join(FILE);
-    let text = input::file_if_there(&list)?.unwrap_or_default();
+    let text = files::read_if_there(&list)?.unwrap_or_default();
     let lines = text.lines().filter_map(|line| line.split_once("  "));
     let mut sums: BTreeMap<String, String> = lines
         .map(|(sum, path)| (path.to_owned(), sum.to_owned()))
@@ -63,7 +60,7 @@ pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, F
 }
 
 /// Removes a file if it exists, and its directories once they are empty.
-fn remove(out: &Path, path: &str) -> Result<(), Failure> {
+fn remove(out: &Path, path: &str) -> Result<(), PackError> {
     let file = out.join(path);
     match fs::remove_file(&file) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {

@@ -2,14 +2,12 @@
 //!
 //! It has neither a time nor a serial number: the same packages have the same bill.
 
+use crate::error::PackError;
+use crate::files;
+use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::Path;
-
-use serde_json::{Map, Value, json};
-
-use super::files;
-use crate::outcome::Failure;
 
 /// The name of the file.
 const FILE: &str = "sbom.cdx.json";
@@ -112,7 +110,7 @@ pub struct Packages {
 }
 
 /// Writes the bill of a language's packages.
-pub fn write(directory: &Path, packages: &Packages) -> Result<(), Failure> {
+pub fn write(directory: &Path, packages: &Packages) -> Result<(), PackError> {
     let Packages { main, others } = packages;
     let all = || std::iter::once(main).chain(others);
     let needed = all().flat_map(|it| &it.dependencies);

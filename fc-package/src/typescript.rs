@@ -1,16 +1,14 @@
 //! The npm tarball.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-
+use crate::error::PackError;
+use crate::files;
+use crate::job::Job;
+use crate::sbom::{Component, Package, Packages};
+use crate::tool::{Tool, unpack};
 use fc_codegen::version::Ecosystem;
 use serde::Deserialize;
-
-use super::sbom::{Component, Package, Packages};
-use super::tool::{Tool, unpack};
-use super::{Job, files};
-use crate::input;
-use crate::outcome::Failure;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 const NPM: Tool = Tool {
     name: "npm",
@@ -32,13 +30,13 @@ struct Manifest {
 }
 
 /// Packs the package, which runs its script `prepare`. The version is set in the packed files.
-pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, PackError> {
     let package = job.package("package.json")?;
     let into = |directory: &Path| format!("--pack-destination={}", directory.display());
     NPM.run(&package, ["pack", &into(&job.work)])?;
     unpack(&files::with_ending(&job.work, ".tgz")?, &job.work)?;
     let packed = job.work.join("package");
-    let manifest: Manifest = serde_json::from_str(&input::file(&packed.join("package.json"))?)?;
+    let manifest: Manifest = serde_json::from_str(&files::read(&packed.join("package.json"))?)?;
     let version = job.version(Ecosystem::Npm, &manifest.version)?;
     NPM.run(&packed, ["pkg", "set", &format!("version={version}")])?;
     NPM.run(&packed, ["pack", "--ignore-scripts", &into(&job.out)])?;

@@ -1,16 +1,15 @@
 //! The crates, as files and as a directory source.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
+use crate::error::PackError;
+use crate::files;
+use crate::job::Job;
+use crate::sbom::{Component, Package, Packages};
+use crate::sums;
+use crate::tool::{Tool, unpack};
 use fc_codegen::version::Ecosystem;
 use serde::Deserialize;
-
-use super::sbom::{Component, Package, Packages};
-use super::tool::{Tool, unpack};
-use super::{Job, files, sums};
-use crate::lang::said;
-use crate::outcome::Failure;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 const CARGO: Tool = Tool {
     name: "cargo",
@@ -64,19 +63,14 @@ impl Dependency {
     }
 }
 
-fn not_a_crate(directory: &Path) -> Failure {
-    let directory = directory.display();
-    said!("`{directory}` 不是 crate", "`{directory}` is not a crate").into()
-}
-
-fn metadata(directory: &Path) -> Result<Workspace, Failure> {
+fn metadata(directory: &Path) -> Result<Workspace, PackError> {
     let arguments = ["metadata", "--format-version=1", "--no-deps", "--offline"];
     let printed = CARGO.run(directory, arguments)?;
     Ok(serde_json::from_str(&printed)?)
 }
 
 /// Packs the generated crate and all crates that it depends on by path. The version is set in the packed files.
-pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, PackError> {
     let package = job.package("Cargo.toml")?;
     let (name, crates) = with_dependencies(&package)?;
     let unpacked = files::directory(&job.work.join("unpacked"))?;
@@ -113,7 +107,7 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
 }
 
 /// Returns the contents of the packed crates.
-fn contents(root: &Path, main: &str) -> Result<Packages, Failure> {
+fn contents(root: &Path, main: &str) -> Result<Packages, PackError> {
     let packed = metadata(root)?.packages;
     let package = |it: &Crate| Package {
         component: component(it),
@@ -126,7 +120,7 @@ fn contents(root: &Path, main: &str) -> Result<Packages, Failure> {
     };
     let mut packages: Vec<_> = packed.iter().map(package).collect();
     let Some(at) = packed.iter().position(|it| it.name == main) else {
-        return Err(not_a_crate(root));
+        return Err(PackError::NotACrate(root.to_owned()));
     };
     Ok(Packages {
         main: packages.remove(at),
@@ -164,7 +158,9 @@ fn is_of(path: &Path, name: &str) -> bool {
 }
 
 /// Returns the name of a crate, and the names of all crates that its users need, by the root of their workspace.
-fn with_dependencies(package: &Path) -> Result<(String, BTreeMap<PathBuf, Vec<String>>), Failure> {
+fn with_dependencies(
+    package: &Path,
+) -> Result<(String, BTreeMap<PathBuf, Vec<String>>), PackError> {
     let mut name = None;
     let mut crates: BTreeMap<PathBuf, Vec<String>> = BTreeMap::new();
     let mut left = vec![package.to_owned()];
@@ -173,7 +169,7 @@ fn with_dependencies(package: &Path) -> Result<(String, BTreeMap<PathBuf, Vec<St
         let workspace = metadata(&directory)?;
         let is_here = |it: &&Crate| it.manifest_path.parent() == Some(&directory);
         let Some(found) = workspace.packages.iter().find(is_here) else {
-            return Err(not_a_crate(&directory));
+            return Err(PackError::NotACrate(directory));
         };
         name.get_or_insert_with(|| found.name.clone());
         let names = crates.entry(workspace.workspace_root).or_default();
@@ -189,7 +185,7 @@ fn with_dependencies(package: &Path) -> Result<(String, BTreeMap<PathBuf, Vec<St
 }
 
 /// Packs crates of a workspace and returns the files.
-fn cargo_package(root: &Path, names: &[String], target: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn cargo_package(root: &Path, names: &[String], target: &Path) -> Result<Vec<PathBuf>, PackError> {
     let target_option = format!("--target-dir={}", target.display());
     let names = names.iter().flat_map(|name| ["--package", name]);
     let arguments = PACKAGE.into_iter().chain([target_option.as_str()]);
@@ -200,7 +196,7 @@ fn cargo_package(root: &Path, names: &[String], target: &Path) -> Result<Vec<Pat
 }
 
 /// Writes the checksums that Cargo wants in each crate of a directory source.
-fn seal(directory: &Path, archive: &Path) -> Result<(), Failure> {
+fn seal(directory: &Path, archive: &Path) -> Result<(), PackError> {
     let mut sums = BTreeMap::new();
     for file in files::below(directory)? {
         sums.insert(file.clone(), sums::of_file(&directory.join(file))?);

@@ -1,15 +1,12 @@
 //! The install tree of the C++ package, as `.tar.gz` and `.deb`.
 
-use std::path::Path;
-
+use crate::error::{PackError, unwritable};
+use crate::files;
+use crate::job::Job;
+use crate::sbom::{Component, Package, Packages};
+use crate::tool::Tool;
 use fc_codegen::version::Ecosystem;
-
-use super::Job;
-use super::sbom::{Component, Package, Packages};
-use super::tool::Tool;
-use crate::input;
-use crate::lang::said;
-use crate::outcome::{Failure, unwritable};
+use std::path::Path;
 
 const CMAKE: Tool = Tool {
     name: "cmake",
@@ -30,20 +27,16 @@ const OPTIONS: [&str; 4] = [
 ];
 
 /// Builds the libraries, and packs what the package installs.
-pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, PackError> {
     let package = job.package("CMakeLists.txt")?;
     let [source, build] = [&package, &job.work].map(|it| it.display().to_string());
     let configure = ["-S", &source, "-B", &build];
     let configure = configure.into_iter().chain(OPTIONS);
     CMAKE.run(&package, configure.clone())?;
     if !job.work.join("CPackConfig.cmake").is_file() {
-        return Err(said!(
-            "`{source}/CMakeLists.txt` 缺少 `include(CPack)`",
-            "`{source}/CMakeLists.txt` lacks `include(CPack)`"
-        )
-        .into());
+        return Err(PackError::NoCpack(package));
     }
-    let cache = input::file(&job.work.join("CMakeCache.txt"))?;
+    let cache = files::read(&job.work.join("CMakeCache.txt"))?;
     let cached = |key: &str| cache.lines().find_map(|line| line.strip_prefix(key));
     let number = cached("CMAKE_PROJECT_VERSION:STATIC=").unwrap_or_default();
     let version = job.version(Ecosystem::Debian, number)?;
@@ -59,7 +52,7 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
     CPACK.run(&job.work, ["-G", forms, "-B", &out])?;
     let leftovers = job.out.join("_CPack_Packages");
     std::fs::remove_dir_all(&leftovers).map_err(unwritable(&leftovers))?;
-    let config = input::file(&job.work.join("CPackConfig.cmake"))?;
+    let config = files::read(&job.work.join("CPackConfig.cmake"))?;
     let name = cached("CMAKE_PROJECT_NAME:STATIC=").unwrap_or_default();
     let mut dependencies = debian_dependencies(&config);
     dependencies.extend(cached("ASIO_INCLUDE:PATH=").and_then(|it| asio(Path::new(it))));
@@ -95,7 +88,7 @@ fn debian_dependencies(config: &str) -> Vec<Component> {
 
 /// Returns Asio, whose headers are compiled into the libraries.
 fn asio(headers: &Path) -> Option<Component> {
-    let text = input::file(&headers.join("asio/version.hpp")).ok()?;
+    let text = files::read(&headers.join("asio/version.hpp")).ok()?;
     let mut lines = text.lines();
     // `#define ASIO_VERSION 102201 // 1.22.1`
     let version = lines.find_map(|line| line.strip_prefix("#define ASIO_VERSION "));

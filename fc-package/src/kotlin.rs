@@ -1,18 +1,15 @@
 //! The jars for Kotlin and Java, in a Maven repository.
 
+use crate::error::PackError;
+use crate::files;
+use crate::job::Job;
+use crate::maven::{Coordinates, seal};
+use crate::sbom::{Package, Packages};
+use crate::tool::Tool;
+use fc_codegen::version::Ecosystem;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-use fc_codegen::version::Ecosystem;
-
-use super::maven::{Coordinates, seal};
-use super::sbom::{Package, Packages};
-use super::tool::Tool;
-use super::{Job, files};
-use crate::input;
-use crate::lang::said;
-use crate::outcome::Failure;
 
 const JAR: Tool = Tool {
     name: "jar",
@@ -40,30 +37,25 @@ struct Part<'p> {
 }
 
 /// Compiles the package with its script, and lays out a repository with runtime and generated code.
-pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, PackError> {
     let package = job.package(PROPERTIES)?;
     let file = package.join(PROPERTIES);
     let properties = Properties::read(&file)?;
     let number = properties.get("version")?;
     let version = job.version(Ecosystem::Maven, number)?;
     let (group, base) = (properties.get("group")?, properties.get("artifact")?);
-    let library = |group: &str, artifact: &str, version: &str| Coordinates {
-        group: group.to_owned(),
-        artifact: artifact.to_owned(),
-        version: version.to_owned(),
-    };
-    let runtime = library(group, &format!("{base}-runtime"), number);
+    let runtime = Coordinates::new(group, &format!("{base}-runtime"), number);
     let parts = [
         Part {
             name: "runtime",
             coordinates: runtime.clone(),
             dependencies: vec![
-                library(
+                Coordinates::new(
                     "org.jetbrains.kotlin",
                     "kotlin-stdlib",
                     properties.get("kotlinVersion")?,
                 ),
-                library(
+                Coordinates::new(
                     "org.jetbrains.kotlinx",
                     "kotlinx-coroutines-core-jvm",
                     properties.get("coroutinesVersion")?,
@@ -72,7 +64,7 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
         },
         Part {
             name: "generated",
-            coordinates: library(group, &format!("{base}-generated"), &version),
+            coordinates: Coordinates::new(group, &format!("{base}-generated"), &version),
             dependencies: vec![runtime],
         },
     ];
@@ -97,7 +89,7 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
 }
 
 impl Part<'_> {
-    fn lay_out(&self, job: &Job<'_>, package: &Path) -> Result<(), Failure> {
+    fn lay_out(&self, job: &Job<'_>, package: &Path) -> Result<(), PackError> {
         let Self {
             name, coordinates, ..
         } = self;
@@ -146,7 +138,7 @@ impl Part<'_> {
 }
 
 /// Returns the names of the files in a directory that begin with these letters.
-fn texts(directory: &Path, start: &str) -> Result<Vec<String>, Failure> {
+fn texts(directory: &Path, start: &str) -> Result<Vec<String>, PackError> {
     let entries = files::entries(directory)?.into_iter();
     let names = entries.filter(|path| path.is_file()).filter_map(|path| {
         let name = path.file_name()?.to_string_lossy().into_owned();
@@ -162,8 +154,8 @@ struct Properties {
 }
 
 impl Properties {
-    fn read(file: &Path) -> Result<Self, Failure> {
-        let text = input::file(file)?;
+    fn read(file: &Path) -> Result<Self, PackError> {
+        let text = files::read(file)?;
         let lines = text.lines().filter(|line| !line.starts_with('#'));
         let values = lines.filter_map(|line| line.split_once('='));
         let values = values.map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()));
@@ -173,12 +165,12 @@ impl Properties {
         })
     }
 
-    fn get(&self, key: &str) -> Result<&str, Failure> {
+    fn get(&self, key: &str) -> Result<&str, PackError> {
         let value = self.values.get(key).map(String::as_str);
         let value = value.filter(|it| !it.is_empty());
-        value.ok_or_else(|| {
-            let file = self.file.display();
-            said!("`{file}` 中没有 `{key}=…`", "`{file}` has no `{key}=…`").into()
+        value.ok_or_else(|| PackError::NoProperty {
+            file: self.file.clone(),
+            key: key.to_owned(),
         })
     }
 }

@@ -1,16 +1,13 @@
 //! The wheel and the source distribution.
 
-use std::path::Path;
-
+use crate::error::PackError;
+use crate::files;
+use crate::job::Job;
+use crate::sbom::{Component, Package, Packages};
+use crate::tool::{Tool, unpack};
 use fc_codegen::version::Ecosystem;
+use std::path::Path;
 use toml_edit::DocumentMut;
-
-use super::sbom::{Component, Package, Packages};
-use super::tool::{Tool, unpack};
-use super::{Job, files};
-use crate::input;
-use crate::lang::said;
-use crate::outcome::Failure;
 
 const PYTHON: Tool = Tool {
     name: "python3",
@@ -18,16 +15,11 @@ const PYTHON: Tool = Tool {
 };
 
 /// Packs the sources. The version is set in the packed files, and the wheel is made of them.
-pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
+pub fn pack(job: &Job<'_>) -> Result<Packages, PackError> {
     let package = job.package("pyproject.toml")?;
     PYTHON
         .run(&job.work, ["-c", "import build"])
-        .map_err(|failure| {
-            said!(
-                "{failure}\n`build` 用 `python3 -m pip install build` 安装",
-                "{failure}\nget `build` with `python3 -m pip install build`"
-            )
-        })?;
+        .map_err(|error| PackError::NoBuild(Box::new(error)))?;
     build(&package, &job.work, &["--sdist"])?;
     unpack(&files::with_ending(&job.work, ".tar.gz")?, &job.work)?;
     let mut packed = files::entries(&job.work)?.into_iter();
@@ -41,8 +33,8 @@ pub fn pack(job: &Job<'_>) -> Result<Packages, Failure> {
 }
 
 /// Returns the contents of a package by its `pyproject.toml`.
-fn contents(manifest: &Path) -> Result<Packages, Failure> {
-    let document: DocumentMut = input::file(manifest)?.parse()?;
+fn contents(manifest: &Path) -> Result<Packages, PackError> {
+    let document: DocumentMut = files::read(manifest)?.parse()?;
     let get = |key| document.get("project").and_then(|it| it.get(key));
     let text = |key| get(key).and_then(|it| it.as_str()).unwrap_or_default();
     let needed = get("dependencies").and_then(|it| it.as_array());
@@ -76,7 +68,7 @@ fn component(name: &str) -> Component {
 }
 
 /// Builds without isolation: an isolated environment would need an index of packages.
-fn build(package: &Path, out: &Path, options: &[&str]) -> Result<(), Failure> {
+fn build(package: &Path, out: &Path, options: &[&str]) -> Result<(), PackError> {
     let out = out.display().to_string();
     let fixed = ["-m", "build", "--no-isolation", "--outdir", &out];
     PYTHON.run(package, fixed.into_iter().chain(options.iter().copied()))?;

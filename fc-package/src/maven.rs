@@ -1,15 +1,14 @@
 //! A repository in the layout of Maven.
 
+use crate::error::PackError;
+use crate::files;
+use crate::sbom::Component;
+use crate::sums;
+use md5::Md5;
+use sha1::Sha1;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-use md5::Md5;
-use sha1::Sha1;
-
-use super::sbom::Component;
-use super::{files, sums};
-use crate::outcome::Failure;
 
 /// The coordinates of an artifact.
 #[derive(Clone, Debug)]
@@ -20,8 +19,17 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
+    /// Returns the coordinates of a version of an artifact.
+    pub fn new(group: &str, artifact: &str, version: &str) -> Self {
+        Self {
+            group: group.to_owned(),
+            artifact: artifact.to_owned(),
+            version: version.to_owned(),
+        }
+    }
+
     /// Creates the directory of the artifact in a repository.
-    pub fn directory(&self, repository: &Path) -> Result<PathBuf, Failure> {
+    pub fn directory(&self, repository: &Path) -> Result<PathBuf, PackError> {
         let mut directory = repository.to_owned();
         directory.extend(self.group.split('.'));
         files::directory(&directory.join(&self.artifact).join(&self.version))
@@ -79,7 +87,7 @@ fn escaped(text: &str) -> String {
 }
 
 /// Writes the checksums that Maven reads next to each file of a directory.
-pub fn seal(directory: &Path) -> Result<(), Failure> {
+pub fn seal(directory: &Path) -> Result<(), PackError> {
     for file in files::entries(directory)? {
         let bytes = fs::read(&file)?;
         let name = file.display();
