@@ -98,3 +98,17 @@ fn asio(headers: &Path) -> Option<Component> {
         ..Component::new("generic", "asio")
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn debian_dependencies_are_split_at_commas() {
+        let config = "set(CPACK_DEBIAN_PACKAGE_DEPENDS \"libc6 (>= 2.34), zlib1g\")\n";
+        let found = debian_dependencies(config);
+        let found = found.iter().map(|it| (&*it.name, &*it.requirement));
+        assert!(found.eq([("libc6", ">= 2.34"), ("zlib1g", "")]));
+        assert!(debian_dependencies("").is_empty());
+    }
+}

@@ -96,3 +96,38 @@ pub fn seal(directory: &Path) -> Result<(), PackError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pom_has_escaped_elements_and_dependencies() {
+        let robot = Coordinates::new("fc.robot", "a<b&c", "0.2.0-2024.9");
+        let pom = robot.pom(
+            "calls & reports",
+            &[Coordinates::new("g", "library", "1.0")],
+        );
+        let expected = "\
+<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<project xmlns=\"http://maven.apache.org/POM/4.0.0\">
+  <modelVersion>4.0.0</modelVersion>
+  <groupId>fc.robot</groupId>
+  <artifactId>a&lt;b&amp;c</artifactId>
+  <version>0.2.0-2024.9</version>
+  <packaging>jar</packaging>
+  <name>a&lt;b&amp;c</name>
+  <description>calls &amp; reports</description>
+  <dependencies>
+    <dependency>
+      <groupId>g</groupId>
+      <artifactId>library</artifactId>
+      <version>1.0</version>
+      <scope>compile</scope>
+    </dependency>
+  </dependencies>
+</project>
+";
+        assert_eq!(pom, expected);
+    }
+}

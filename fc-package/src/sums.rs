@@ -76,3 +76,33 @@ fn remove(out: &Path, path: &str) -> Result<(), PackError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn replace_removes_only_listed_files_of_a_language() -> Result<(), PackError> {
+        let root = tempfile::tempdir()?;
+        let out = files::directory(&root.path().join("out"))?;
+        let made = files::directory(&root.path().join("made"))?;
+        let listed = ["cpp/a", "rust/../../outside", "rust/old/a"];
+        for path in listed.into_iter().chain(["rust/note"]) {
+            files::directory(out.join(path).parent().unwrap_or(&out))?;
+            files::write(&out.join(path), "")?;
+        }
+        let lines = listed.map(|path| format!("0  {path}\n"));
+        files::write(&out.join(FILE), lines.concat())?;
+        files::write(&made.join("new"), "new")?;
+
+        assert_eq!(replace(&out, "rust", &made)?, ["rust/new"]);
+        let left = ["SHA256SUMS", "cpp/a", "rust/new", "rust/note"];
+        assert_eq!(files::below(&out)?, left);
+        assert!(!out.join("rust/old").exists());
+        assert!(root.path().join("outside").exists());
+        let sum = hex::<Sha256>(b"new");
+        let list = format!("0  cpp/a\n{sum}  rust/new\n");
+        assert_eq!(files::read(&out.join(FILE))?, list);
+        Ok(())
+    }
+}
