@@ -10,7 +10,7 @@ use fc_package::{Language, Packed};
 use fc_spec::model::Model;
 
 use crate::generate;
-use crate::lang::{both, in_lang, said};
+use crate::lang::{both, said};
 use crate::outcome::{Failure, Status, unwritable};
 use crate::project::Project;
 use crate::project_dirs::ProjectDirs;
@@ -81,7 +81,12 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
             Ok(packed) => print::done(&summary(name, &packed))?,
             Err(failure) => {
                 status = Status::Faulty;
-                print::error(&said!("{name}：{failure}", "{name}: {failure}"))?;
+                let reason = print::reason(failure.as_ref());
+                print::error(&said!(
+                    "{name}：{reason}",
+                    "{name}: {reason}",
+                    reason = reason
+                ))?;
             }
         }
     }
@@ -119,8 +124,7 @@ fn pack(
         root: &project.root,
         targets: &project.targets,
     };
-    let packed = fc_package::pack(sources, language, &edition, out);
-    Ok(packed.map_err(|error| in_lang(&error.text()))?)
+    Ok(fc_package::pack(sources, language, &edition, out)?)
 }
 
 /// Returns the edition of a package: the release of the spec if it has the same content as the working tree.

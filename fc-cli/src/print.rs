@@ -3,6 +3,7 @@
 use fc_codegen::output::{OutputError, unified};
 use fc_codegen::target::TargetError;
 use fc_diff::VersionError;
+use fc_package::PackError;
 use fc_spec::diagnostic::{Faults, Format, render, summary};
 use fc_spec::load::SettleError;
 use fc_spec::model::{DumpError, ProjectionError, Text};
@@ -104,7 +105,8 @@ pub fn reason(failure: &(dyn Error + 'static)) -> Text {
         VersionError,
         ClientError,
         InputError,
-        ListenError
+        ListenError,
+        PackError
     );
     let text = failure.to_string();
     Text {

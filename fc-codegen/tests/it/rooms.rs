@@ -258,18 +258,57 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Returns the modules of a crate that a source file uses, outside of comments and tests.
-fn used(text: &str) -> BTreeSet<&str> {
-    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+fn used(text: &str) -> BTreeSet<String> {
+    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
     let lines = code
         .lines()
         .filter(|line| !line.trim_start().starts_with("//"));
-    let uses = lines.flat_map(|line| line.split("crate::").skip(1));
-    uses.map(|path| {
-        path.split(|c: char| !c.is_alphanumeric() && c != '_')
-            .next()
-            .unwrap_or_default()
+    let code: String = lines.collect();
+    let uses = code.split("crate::").skip(1);
+    uses.flat_map(|path| match path.strip_prefix('{') {
+        Some(group) => grouped(group),
+        None => vec![name(path)],
     })
     .collect()
+}
+
+/// Returns the name that a path begins with.
+fn name(path: &str) -> String {
+    let letters = path.trim_start().chars();
+    letters
+        .take_while(|it| it.is_alphanumeric() || *it == '_')
+        .collect()
+}
+
+/// Returns the first name of each path in a group `a, b::{c, d}}`.
+fn grouped(group: &str) -> Vec<String> {
+    let (mut names, mut start, mut depth) = (Vec::new(), 0, 0);
+    for (at, letter) in group.char_indices() {
+        match letter {
+            '{' => depth += 1,
+            '}' if depth > 0 => depth -= 1,
+            ',' | '}' if depth == 0 => {
+                names.push(name(&group[start..at]));
+                start = at + 1;
+                if letter == '}' {
+                    break;
+                }
+            }
+            _ => {}
+        }
+    }
+    names
+}
+
+#[test]
+fn uses_in_groups_and_paths_are_found() {
+    let text =
+        "use crate::{facts, paths::{self, at}, run};\n// crate::no\nfn a() { crate::deep::b() }";
+    let text = format!(
+        "{text}\n#[cfg(test)]\nuse crate::dump;\n#[cfg(test)]\nmod tests {{ crate::view }}"
+    );
+    let found: Vec<_> = used(&text).into_iter().collect();
+    assert_eq!(found, ["deep", "dump", "facts", "paths", "run"]);
 }
 
 /// Returns the uses of later modules in a crate.
@@ -293,7 +332,7 @@ fn upwards(of: &Crate) -> BTreeSet<(&'static str, &'static str)> {
             .unwrap_or_else(|| panic!("`{module}` of {} has no place in CRATES", of.name));
         seen.insert(own);
         let text = fs::read_to_string(&path).expect("a source file");
-        let later = used(&text).into_iter().filter_map(rank);
+        let later = used(&text).into_iter().filter_map(|name| rank(&name));
         let later = later.filter(|other| *other > own);
         upwards.extend(later.map(|other| (of.rooms[own], of.rooms[other])));
     }
