@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use fc_codegen::output::{MANIFEST, generated};
 use fc_codegen::target::FILE;
+use tempfile::TempDir;
 
 use super::{git_line, git_with, known};
 use crate::lang::said;
@@ -44,7 +45,7 @@ pub fn run(dirs: &ProjectDirs) -> Result<Status, Failure> {
 
 /// A copy of the staged files in a temporary directory. Dropping it removes the directory.
 struct Staged {
-    directory: PathBuf,
+    directory: TempDir,
     /// The project's directory, relative to the root of the working tree.
     prefix: String,
 }
@@ -60,7 +61,7 @@ impl Staged {
         };
         // The tree of the next commit. It leaves out files that are only intended to be added.
         let tree = git_line(&top, &["write-tree"])?;
-        let index = staged.directory.join("index");
+        let index = staged.directory.path().join("index");
         let index = [("GIT_INDEX_FILE", index.to_string_lossy().into_owned())];
         git_with(&top, &["read-tree", &tree], "", &index)?;
         let root = std::path::absolute(root)?;
@@ -81,7 +82,7 @@ impl Staged {
 
     /// Returns the root of the copied working tree.
     fn copy(&self) -> PathBuf {
-        self.directory.join("tree")
+        self.directory.path().join("tree")
     }
 
     /// Returns the root of the copied project.
@@ -112,38 +113,19 @@ impl Staged {
     }
 }
 
-impl Drop for Staged {
-    fn drop(&mut self) {
-        // If this fails, the system removes its temporary files later.
-        let _ = fs::remove_dir_all(&self.directory);
-    }
-}
-
 /// Makes a directory for temporary files that other users cannot read.
-fn temporary() -> Result<PathBuf, Failure> {
-    let process = std::process::id();
-    let mut builder = fs::DirBuilder::new();
+fn temporary() -> Result<TempDir, Failure> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix("fcproto-");
     #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    let mut attempt = 0;
-    loop {
-        let path = std::env::temp_dir().join(format!("fcproto-{process}-{attempt}"));
-        match builder.create(&path) {
-            Ok(()) => return Ok(path),
-            Err(error) if error.kind() == ErrorKind::AlreadyExists && attempt < ATTEMPTS => {
-                attempt += 1;
-            }
-            Err(error) => {
-                let path = path.display();
-                return Err(said!(
-                    "无法创建 `{path}`：{error}",
-                    "cannot make `{path}`: {error}"
-                )
-                .into());
-            }
-        }
-    }
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    let made = builder.tempdir();
+    Ok(made.map_err(|error| {
+        let path = std::env::temp_dir();
+        let path = path.display();
+        said!(
+            "无法创建 `{path}`：{error}",
+            "cannot make `{path}`: {error}"
+        )
+    })?)
 }
-
-/// The maximum number of further names that are tried for a temporary directory.
-const ATTEMPTS: u32 = 100;
