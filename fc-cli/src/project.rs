@@ -7,7 +7,7 @@ use fc_codegen::output::replace_spec_file;
 use fc_codegen::target::{FILE, Targets};
 use fc_spec::diagnostic::Faults;
 use fc_spec::source::{SourceFile, Sources};
-use fc_spec::syntax::read_files;
+use fc_spec::syntax::{is_spec_file, read_files};
 
 use crate::lang::{in_lang, said};
 use crate::outcome::Failure;
@@ -70,6 +70,14 @@ impl Project {
             written.push(file.path.clone());
         }
         Ok(written)
+    }
+
+    /// Returns the path of a file of the spec, relative to the root, or `None` for other files. `path` is relative to the
+    /// current directory, like the root.
+    pub fn spec_file<'p>(&self, path: &'p Path) -> Option<&'p str> {
+        let path = path.strip_prefix(&self.root).unwrap_or(path);
+        let is_of_spec = path.strip_prefix(&self.spec).is_ok_and(is_spec_file);
+        path.to_str().filter(|_| is_of_spec)
     }
 
     fn at(root: PathBuf, dirs: &ProjectDirs) -> Result<Self, Failure> {

@@ -4,11 +4,9 @@ use std::fmt::Write as _;
 
 use fc_codegen::inspect::release_dump;
 use fc_codegen::output::replace_spec_file;
-use fc_diff::release::{DIRECTORY, NoNumber, Number, Objection, file, goes_back, objections};
-use fc_diff::{Finding, Lang, first_section, is_ours, section, with_section};
+use fc_diff::release::{DIRECTORY, NoNumber, Number, Objection, file};
+use fc_diff::{Finding, Lang, NextRelease, with_section};
 use fc_spec::model::{Model, Text};
-use fc_spec::revision::{renumbered, without_waiver};
-use fc_spec::source::Sources;
 
 use crate::lang::{both, in_lang, said};
 use crate::outcome::{Failure, Status};
@@ -58,35 +56,22 @@ pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     let number = &options.number;
     let shelf = Shelf::of(spec.project.clone())?;
     let today = today(options.today.as_deref());
-    let change = Change::to(number, spec)?;
-    let findings = changes(&shelf, &change.agreed, &today)?;
-    let mut objections = match (shelf.releases.last(), &findings) {
-        (Some((last, _)), Some(findings)) => objections(last, number, findings),
-        _ => Vec::new(),
-    };
-    let is_late = |it: &Objection| matches!(it, Objection::NotLater { .. });
-    if !objections.iter().any(is_late) {
-        objections.extend(goes_back(number, &before.protocol.version));
-    }
+    let next = next_release(number, spec)?;
+    let findings = changes(&shelf, &next.agreed, &today)?;
+    let findings = findings.as_deref();
+    let objections = next.objections(&before.protocol.version, &shelf.releases, findings);
     if !objections.is_empty() {
         return refuse(number, &objections, &shelf);
     }
 
-    let title = format!("{number} ({today})");
     let languages = CHANGELOGS.into_iter();
     let languages = languages.filter(|(lang, _)| spec.texts().include(*lang));
-    let sections = languages.map(|(lang, file)| {
-        let section = match &findings {
-            Some(findings) => section(&title, findings, &change.agreed, lang),
-            None => first_section(&title, &change.agreed, lang),
-        };
-        (lang, file, section)
-    });
+    let sections = languages.map(|(lang, file)| (lang, file, next.section(&today, findings, lang)));
     let sections: Vec<_> = sections.collect();
     if options.dry_run {
         let would = print::good(&said!("将会发布", "would release"));
         let mut text = format!("{would} {number}\n");
-        for (path, diff) in &change.diffs {
+        for (path, diff) in &next.diffs {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "\n{path}\n{}", print::diff(diff).trim_end());
         }
@@ -96,18 +81,18 @@ pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
         print::result(&text)?;
         return Ok(Status::Fine);
     }
-    let mut written = write(&shelf, &change.released, number, &sections)?;
-    written.extend(spec.project.write_changes(&spec.sources, &change.sources)?);
+    let mut written = write(&shelf, &next.released, number, &sections)?;
+    written.extend(spec.project.write_changes(&spec.sources, &next.sources)?);
     let released = print::good(&said!("已发布", "released"));
     let mut text = format!("{released} {number}\n");
     for path in written {
         let _ = writeln!(text, "  {path}");
     }
-    if !change.left.is_empty() {
+    if !next.left.is_empty() {
         text += &said!(
             "这些豁免已经用过，请删除：{left}\n",
             "remove these waivers, which are used up: {left}\n",
-            left = Text::listed(&change.left)
+            left = Text::listed(&next.left)
         );
     }
     text += &said!(
@@ -118,61 +103,24 @@ pub fn run(spec: &Spec, options: &Options) -> Result<Status, Failure> {
     Ok(Status::Fine)
 }
 
-/// The changes that a release makes to the spec.
-struct Change {
-    /// The model with the new number and the waivers. It is compared with the last release.
-    agreed: Model,
-    /// The model without the waivers. The release contains it.
-    released: Model,
-    /// The changed files.
-    sources: Sources,
-    /// The path and the diff of each change, without line numbers.
-    diffs: Vec<(String, String)>,
-    /// Waivers that are not on separate lines. The user has to remove them.
-    left: Vec<String>,
-}
-
-impl Change {
-    fn to(number: &Number, spec: &Spec) -> Result<Self, Failure> {
-        let Some(renumbered) = renumbered(&spec.sources, &number.to_string()) else {
-            return Err(said!(
-                "规范的文件中都没有写版本",
-                "no file of the spec has its version"
+/// Edits the spec for the release, and checks it.
+fn next_release(number: &Number, spec: &Spec) -> Result<NextRelease, Failure> {
+    let next = NextRelease::prepare(number, &spec.sources, |sources| {
+        let after = spec.instead(sources);
+        let objection = after.objection();
+        after.model.ok_or_else(|| {
+            said!(
+                "版本改为 {number} 后，{objection}",
+                "as {number} {objection}"
             )
-            .into());
-        };
-        let sound = |sources: &Sources| {
-            let after = spec.instead(sources.clone());
-            let objection = after.objection();
-            let model = after.model;
-            model.ok_or_else(|| {
-                said!(
-                    "版本改为 {number} 后，{objection}",
-                    "as {number} {objection}"
-                )
-            })
-        };
-        let agreed = sound(&renumbered.sources)?;
-        let (mut sources, mut left) = (renumbered.sources, Vec::new());
-        let mut diffs = vec![(renumbered.path, renumbered.diff)];
-        for waiver in agreed.waivers.iter().filter(|it| is_ours(it)) {
-            match without_waiver(&sources, &waiver.id) {
-                Some(without) => {
-                    sources = without.sources;
-                    diffs.push((without.path, without.diff));
-                }
-                None => left.push(waiver.id.clone()),
-            }
-        }
-        diffs.retain(|(_, diff)| !diff.is_empty());
-        Ok(Self {
-            released: sound(&sources)?,
-            agreed,
-            sources,
-            diffs,
-            left,
         })
-    }
+    })?;
+    Ok(next.ok_or_else(|| {
+        said!(
+            "规范的文件中都没有写版本",
+            "no file of the spec has its version"
+        )
+    })?)
 }
 
 /// Returns the changes since the last release, or `None` if there is none.

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use fc_codegen::target::Targets;
-use fc_diff::release::{Number, Releases};
-use fc_diff::{Against, Finding, Packages, Version, VersionError, diff_since, gone_early, waive};
+use fc_diff::release::Releases;
+use fc_diff::{Finding, Packages, ProjectSpec, Version, VersionError};
 use fc_spec::diagnostic::{Format, render};
 
 use crate::lang::{both, lang, said};
@@ -99,7 +99,7 @@ impl Shelf {
 
     /// Returns the name of the working tree.
     pub fn here(&self) -> String {
-        self.project.root.display().to_string()
+        compared(&self.project).working_tree()
     }
 
     /// Reads a version. Shows the errors of its spec and returns `None` if it has any.
@@ -108,7 +108,7 @@ impl Shelf {
             "正在读取规范的两个版本",
             "reading two versions of the spec",
         ));
-        match Version::read(name, &self.project.root, &self.project.spec) {
+        match compared(&self.project).read(name) {
             Ok(version) => Ok(Some(version)),
             Err(VersionError::Faulty {
                 name,
@@ -134,33 +134,8 @@ impl Shelf {
         today: &str,
     ) -> Result<Vec<Finding>, Failure> {
         progress::doing(both("正在比较", "comparing"));
-        let earlier = self.earlier(old, new)?;
-        let earlier = earlier.iter().map(|it| (it.name.as_str(), &it.model));
-        let mut findings = diff_since(earlier, &old.model, &new.model, packages(&self.project));
-        findings.extend(gone_early(&old.model, &new.model, today));
-        let last = self.releases.last().map(|(number, _)| number.to_string());
-        let since_release = last.as_ref() == Some(&old.name) && new.name == self.here();
-        let against = if since_release {
-            Against::Release
-        } else {
-            Against::Other
-        };
-        waive(&mut findings, &new.model.waivers, today, against);
-        Ok(findings)
-    }
-
-    /// Reads the releases before both versions, the last one first. A version that is not a release comes after all
-    /// releases.
-    fn earlier(&self, old: &Version, new: &Version) -> Result<Vec<Version>, Failure> {
-        let number = |name: &str| {
-            let mut numbers = self.releases.numbers();
-            numbers.find(|number| number.to_string() == name)
-        };
-        let bounds = [number(&old.name), number(&new.name)];
-        let is_before = |it: &&Number| bounds.into_iter().flatten().all(|bound| *it < bound);
-        let earlier = self.releases.numbers().rev().filter(is_before);
-        let versions = earlier.map(|number| self.read(&number.to_string()));
-        versions.filter_map(Result::transpose).collect()
+        let project = compared(&self.project);
+        Ok(project.compare(&self.releases, [old, new], today)?)
     }
 
     /// Returns the path of a file of the spec, relative to the root.
@@ -169,10 +144,14 @@ impl Shelf {
     }
 }
 
-/// Returns the settings of a project's packages.
-pub fn packages(project: &Project) -> Packages {
-    Packages {
-        id_types: project.targets.has_id_types(),
+/// Returns the spec of a project for a comparison of its versions.
+pub fn compared(project: &Project) -> ProjectSpec<'_> {
+    ProjectSpec {
+        root: &project.root,
+        spec: &project.spec,
+        packages: Packages {
+            id_types: project.targets.has_id_types(),
+        },
     }
 }
 

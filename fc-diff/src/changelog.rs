@@ -59,8 +59,7 @@ pub fn section(title: &str, findings: &[Finding], new: &Model, lang: Lang) -> St
 }
 
 /// Returns the section of the first release, which has no version to compare with.
-#[must_use]
-pub fn first_section(title: &str, model: &Model, lang: Lang) -> String {
+pub(crate) fn first_section(title: &str, model: &Model, lang: Lang) -> String {
     let count = model.operations.len();
     match lang {
         Lang::En if count == 1 => format!("## {title}\n\nFirst release, with one operation.\n"),

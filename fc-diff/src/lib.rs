@@ -15,10 +15,14 @@
 //! waivers. Waivers belong to a comparison and not to the protocol.
 
 mod changelog;
+mod file_diff;
 mod finding;
+mod git;
 mod history;
 mod judge;
 mod matching;
+mod next_release;
+mod project;
 pub mod release;
 mod render;
 mod rule;
@@ -27,14 +31,17 @@ mod sunset;
 mod version;
 mod waive;
 
-pub use changelog::{first_section, section, with_section};
+pub use changelog::{section, with_section};
 pub use fc_spec::model::Lang;
+pub use file_diff::{FileDiff, FileVersion, file_diff};
 pub use finding::{Deployment, Finding, Senders, Spot};
-pub use render::{Format, render, stands_in};
+pub use next_release::NextRelease;
+pub use project::ProjectSpec;
+pub use render::{Format, render};
 pub use rule::{About, Language, Rule, Wire};
 pub use sunset::gone_early;
 pub use version::{Version, VersionError};
-pub use waive::{Against, is_ours, waive};
+pub use waive::{Against, waive};
 
 use fc_spec::model::Model;
 

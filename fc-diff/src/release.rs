@@ -164,6 +164,14 @@ impl Releases {
     pub fn numbers(&self) -> impl DoubleEndedIterator<Item = &Number> {
         self.0.iter().map(|(number, _)| number)
     }
+
+    /// Returns the numbers of the releases before two versions, the last one first. A version that is not a release
+    /// comes after all releases.
+    pub(crate) fn before(&self, versions: [&str; 2]) -> impl Iterator<Item = &Number> {
+        let bounds = versions.map(|name| self.numbers().find(|number| number.text == name));
+        let is_before = move |it: &&Number| bounds.into_iter().flatten().all(|bound| *it < bound);
+        self.numbers().rev().filter(is_before)
+    }
 }
 
 /// The error for a release that does not exist.

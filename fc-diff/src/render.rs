@@ -44,8 +44,7 @@ pub fn render(
 
 /// Returns `true` if the subject of a finding is in this file, in either version. A subject without a place counts as
 /// being where its owner is.
-#[must_use]
-pub fn stands_in(finding: &Finding, path: &str, [old, new]: [&Version; 2]) -> bool {
+pub(crate) fn stands_in(finding: &Finding, path: &str, [old, new]: [&Version; 2]) -> bool {
     let owner = |version: &Version| {
         finding.subject.split('.').find_map(|name| {
             let name = name.to_owned();

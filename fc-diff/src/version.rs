@@ -1,16 +1,16 @@
 //! Loads a version of a spec from a directory, a dump, a release or git.
 
+use crate::git::git;
 use crate::release::{NoRelease, Number, Releases};
 use fc_spec::diagnostic::Faults;
 use fc_spec::index::{Definitions, definitions};
 use fc_spec::load::Trees;
 use fc_spec::model::{Dump, DumpError, Languages, Model, Text};
 use fc_spec::source::Sources;
-use fc_spec::syntax::read_dir;
+use fc_spec::syntax::{is_spec_file, read_dir};
 use fc_spec::{text, text_error};
 use std::io::Read as _;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 /// The prefix of a version in git: `git:main`.
 const GIT: &str = "git:";
@@ -170,9 +170,13 @@ impl Version {
     /// # Errors
     ///
     /// [`VersionError::Git`], [`VersionError::TooLarge`].
-    pub fn sources_of(name: &str, project: &Path, spec: &Path) -> Result<Sources, VersionError> {
+    pub(crate) fn sources_of(
+        name: &str,
+        project: &Path,
+        spec: &Path,
+    ) -> Result<Sources, VersionError> {
         let reference = name.strip_prefix(GIT).unwrap_or(name);
-        git(name, reference, project, spec)
+        revision(name, reference, project, spec)
     }
 
     /// Loads a version from files. `faults` has the errors that were found before.
@@ -201,22 +205,14 @@ impl Version {
 }
 
 /// Reads the files of a spec at a git revision.
-fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sources, VersionError> {
+fn revision(
+    name: &str,
+    reference: &str,
+    project: &Path,
+    spec: &Path,
+) -> Result<Sources, VersionError> {
     let fails = |why: String| VersionError::Git(name.to_owned(), why);
-    let say = |arguments: &[&str]| -> Result<Vec<u8>, VersionError> {
-        let mut command = Command::new("git");
-        command
-            .arg("-C")
-            .arg(project)
-            .args(arguments)
-            .stdin(Stdio::null());
-        let output = command.output().map_err(|error| fails(error.to_string()))?;
-        if !output.status.success() {
-            let why = String::from_utf8_lossy(&output.stderr);
-            return Err(fails(why.trim().trim_start_matches("fatal: ").to_owned()));
-        }
-        Ok(output.stdout)
-    };
+    let say = |arguments: &[&str]| git(project, arguments).map_err(fails);
     if reference.is_empty() || reference.starts_with('-') {
         return Err(fails(
             "expected a branch, tag or commit, such as git:main".to_owned(),
@@ -239,8 +235,7 @@ fn git(name: &str, reference: &str, project: &Path, spec: &Path) -> Result<Sourc
             facts.next().unwrap_or_default(),
         );
         // Only files that a spec in a directory would consist of.
-        let file = path.strip_prefix("commands/").unwrap_or(path);
-        if file.contains('/') || Path::new(file).extension().is_none_or(|it| it != "yaml") {
+        if !is_spec_file(Path::new(path)) {
             continue;
         }
         left = match left.checked_sub(size.parse().unwrap_or(u64::MAX)) {

@@ -9,8 +9,7 @@ use fc_spec::model::Waiver;
 const OURS: &str = "FC07";
 
 /// Returns `true` if a waiver is about a change between versions.
-#[must_use]
-pub fn is_ours(waiver: &Waiver) -> bool {
+pub(crate) fn is_ours(waiver: &Waiver) -> bool {
     waiver.id.starts_with(OURS)
 }
 

@@ -7,7 +7,6 @@ use std::process::Command;
 use fc_codegen::output::{MANIFEST, generated, merge_manifests};
 use fc_spec::merge::merge;
 
-use super::spec_file;
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status, unreadable, unwritable};
 use crate::print;
@@ -61,7 +60,7 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
         let _ = options.by_lines(&["--ours"])?;
         return Ok(Status::Fine);
     }
-    if !spec_file(project, Path::new(path)) {
+    if project.spec_file(&options.path).is_none() {
         return options.by_lines(&[]);
     }
     let [base, ours, theirs] = options.texts()?;

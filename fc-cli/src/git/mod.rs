@@ -14,7 +14,6 @@ use std::process::{Command, Stdio};
 
 use crate::lang::said;
 use crate::outcome::{Failure, Status};
-use crate::project::Project;
 use crate::project_dirs::ProjectDirs;
 
 /// Options of `fcproto git`.
@@ -107,15 +106,6 @@ fn git_with(
         return Err(format!("git {command}: {}", why.trim()).into());
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
-}
-
-/// Returns `true` if a file belongs to the project's spec. `path` is relative to the project's directory.
-fn spec_file(project: &Project, path: &Path) -> bool {
-    let Ok(path) = path.strip_prefix(&project.spec) else {
-        return false;
-    };
-    let path = path.strip_prefix("commands").unwrap_or(path);
-    path.components().count() == 1 && path.extension().is_some_and(|it| it == "yaml")
 }
 
 /// Splits a text with parts that end in NUL.
