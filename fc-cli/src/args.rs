@@ -5,11 +5,10 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::help::global;
 use crate::lang::{Language, both};
-use crate::project_dirs::ProjectDirs;
 use crate::{
     call, certify, changelog, check, codes, decode, diff, drift, encode, explain, fmt, generate,
-    git, init, inspect, lint, lsp, mock, new, package, proxy, questions, release, retire, schema,
-    settle, shell, where_,
+    git, init, inspect, lint, lsp, mock, new, package, project_dirs, proxy, questions, release,
+    retire, schema, settle, shell, where_,
 };
 
 /// Styles of help and usage errors.
@@ -24,7 +23,7 @@ pub const STYLES: Styles = Styles::styled()
 #[command(name = "fcproto", version, styles = STYLES)]
 pub struct Args {
     #[command(flatten)]
-    pub dirs: ProjectDirs,
+    pub dirs: project_dirs::Options,
     #[arg(
         long,
         value_name = "WHEN",

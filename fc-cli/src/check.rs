@@ -9,7 +9,7 @@ use crate::lang::{both, counted, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::output::Output;
 use crate::print;
-use crate::project::{Project, changed, in_repository};
+use crate::project::{Project, in_repository};
 use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 
@@ -96,7 +96,7 @@ fn fixed(spec: Spec, options: &Options) -> Result<Spec, Failure> {
         return Ok(spec);
     };
     if options.dry_run {
-        let changes = changed(&spec.sources, &fixed.sources);
+        let changes = fixed.sources.changes_since(&spec.sources);
         let changes = changes.map(|(old, new)| print::change(&old.path, &old.text, &new.text));
         print::result(&changes.collect::<String>())?;
         return Ok(spec);

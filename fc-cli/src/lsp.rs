@@ -39,8 +39,7 @@ struct Here<'p> {
 
 impl Host for Here<'_> {
     fn find(&self, directory: &Path) -> Result<fc_lsp::Project, Text> {
-        let project = Project::find_from(self.dirs, directory);
-        let project = project.map_err(|failure| print::reason(failure.as_ref()))?;
+        let project = Project::find_from(self.dirs, directory).map_err(|error| error.text())?;
         // Clients name files by absolute paths, independent of the server's directory.
         let root = std::path::absolute(&project.root).map_err(|error| print::reason(&error))?;
         Ok(fc_lsp::Project::new(root, project.spec, project.targets))

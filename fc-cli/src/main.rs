@@ -87,7 +87,7 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<Status, Failure> {
-    let dirs = &args.dirs;
+    let dirs = &args.dirs.dirs();
     match &args.command {
         Command::Check(options) => check::run(dirs, options),
         Command::Explain(options) => explain::run(options),

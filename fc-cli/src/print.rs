@@ -1,6 +1,7 @@
 //! Output to the terminal. All texts may contain ANSI colors, and the streams remove them where they are not supported.
 
 use fc_codegen::output::{OutputError, unified};
+use fc_codegen::project::ProjectError;
 use fc_codegen::target::TargetError;
 use fc_diff::VersionError;
 use fc_package::PackError;
@@ -71,7 +72,7 @@ pub fn faults(faults: &Faults, sources: &Sources) -> io::Result<()> {
 
 /// Prints the reason why a command failed.
 pub fn failure(failure: &(dyn Error + 'static)) {
-    if let Some(TargetError::Settings(settings)) = failure.downcast_ref() {
+    if let Some(ProjectError::Targets(TargetError::Settings(settings))) = failure.downcast_ref() {
         let _ = faults(&settings.faults, &settings.sources);
         return;
     }
@@ -97,6 +98,7 @@ pub fn reason(failure: &(dyn Error + 'static)) -> Text {
     of!(
         DumpError,
         OutputError,
+        ProjectError,
         ProjectionError,
         RetireError,
         ScaffoldError,

@@ -50,7 +50,7 @@ impl Shelf {
     pub fn find(dirs: &ProjectDirs, is_needed: bool) -> Result<Self, Failure> {
         match Project::find(dirs) {
             Ok(project) => Self::of(project),
-            Err(error) if is_needed => Err(error),
+            Err(error) if is_needed => Err(error.into()),
             Err(_) => Self::of(Project {
                 root: ".".into(),
                 spec: "spec".into(),

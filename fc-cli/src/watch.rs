@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::{Duration, Instant};
 
+use fc_codegen::project::read_settings;
 use fc_codegen::target::FILE;
 use fc_spec::diagnostic::Faults;
 use fc_spec::syntax::read_dir;
@@ -18,9 +19,9 @@ use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher as _};
 
 use crate::lang::{both, said};
 use crate::outcome::{Failure, Status};
-use crate::project::{Project, settings};
+use crate::project::Project;
 use crate::project_dirs::ProjectDirs;
-use crate::{plugin, print, project};
+use crate::{plugin, print};
 
 /// The time without events before the spec is read again. Editors and git change several files at once.
 const CALM: Duration = Duration::from_millis(100);
@@ -34,7 +35,7 @@ pub fn run(
     dirs: &ProjectDirs,
     work: impl Fn(&ProjectDirs) -> Result<Status, Failure>,
 ) -> Result<Status, Failure> {
-    let root = project::root(dirs)?;
+    let root = dirs.find_root()?;
     let dirs = ProjectDirs {
         root: Some(root.clone()),
         spec: dirs.spec.clone(),
@@ -105,7 +106,7 @@ fn wait(events: &Receiver<()>) {
 
 /// Returns the directory of the spec: the usual one while `fc.yaml` cannot be read.
 fn spec(dirs: &ProjectDirs) -> PathBuf {
-    Project::find(dirs).map_or_else(|_| Project::usual_spec(dirs), |project| project.spec)
+    Project::find(dirs).map_or_else(|_| dirs.usual_spec(), |project| project.spec)
 }
 
 fn cannot(path: &Path, error: &notify::Error) -> String {
@@ -169,7 +170,7 @@ impl Input {
         let mut files: Vec<_> = files
             .map(|(_, file)| (file.path.clone(), file.text.clone()))
             .collect();
-        if let Ok(Some(text)) = settings(root) {
+        if let Ok(Some(text)) = read_settings(root) {
             files.push((FILE.to_owned(), text));
         }
         files.sort();

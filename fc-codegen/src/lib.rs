@@ -3,6 +3,7 @@
 //! [`emit`] turns a model into artifacts. [`package`] contains the content that all packages share, and `fc-reflect`
 //! invents values and frames. Only [`output`] writes to the disk. [`inspect`] dumps the model, [`questions`] lists the
 //! questions for its owner, and [`codes`] lists its codes. [`version`] makes versions of packages. [`check`] finds all errors that prevent generating.
+//! [`project`] finds a project and reads its settings.
 
 pub mod check;
 pub mod codes;
@@ -12,6 +13,7 @@ pub mod output;
 pub mod package;
 mod plugin;
 pub mod product;
+pub mod project;
 pub mod questions;
 pub mod target;
 mod target_error;

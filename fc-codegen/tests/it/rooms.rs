@@ -54,6 +54,7 @@ const CRATES: &[Crate] = &[
             "emit",
             "codes",
             "output",
+            "project",
             "questions",
             "inspect",
         ],

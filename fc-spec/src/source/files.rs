@@ -193,6 +193,16 @@ impl Sources {
         (0..).map(FileId).zip(self.files.iter().map(Arc::as_ref))
     }
 
+    /// Returns the files whose text has changed, each before and after the change. `before` has the same paths.
+    pub fn changes_since<'s>(
+        &'s self,
+        before: &'s Self,
+    ) -> impl Iterator<Item = (&'s SourceFile, &'s SourceFile)> {
+        let pairs = before.files.iter().zip(&self.files);
+        let pairs = pairs.map(|(before, after)| (before.as_ref(), after.as_ref()));
+        pairs.filter(|(before, after)| before.text != after.text)
+    }
+
     /// Returns the path of the file of a span. It is empty for a file that is not in the list.
     #[must_use]
     pub fn path(&self, span: Span) -> &str {
