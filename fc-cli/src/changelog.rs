@@ -1,7 +1,6 @@
 //! `fcproto changelog`.
 
-use fc_diff::{Version, section};
-use fc_spec::model::Model;
+use fc_diff::{for_audience, section};
 
 use crate::lang::{both, lang};
 use crate::outcome::{Failure, Status};
@@ -30,24 +29,13 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
         Some(_) => new.model.protocol.version.clone(),
         None => lang.pick("未发布", "Unreleased").to_owned(),
     };
-    let (old, new) = match options.audience.as_deref() {
-        Some(audience) => of_audience(old, new, audience)?,
-        None => (old, new),
+    let [old, new] = match &options.audience {
+        Some(audience) => {
+            for_audience([old, new], audience).map_err(|unknown| unknown.to_string())?
+        }
+        None => [old, new],
     };
     let findings = shelf.compare(&old, &new, &today(None))?;
     print::result(&section(&title, &findings, &new.model, lang))?;
     Ok(Status::Fine)
-}
-
-/// Returns both versions without the parts for other audiences. A version that does not know the audience stays whole.
-fn of_audience(old: Version, new: Version, audience: &str) -> Result<(Version, Version), Failure> {
-    let [one, other] = [&old, &new].map(|it| it.model.for_audience(audience));
-    if let (Err(_), Err(unknown)) = (&one, &other) {
-        return Err(unknown.to_string().into());
-    }
-    let part = |whole: Version, part: Option<Model>| Version {
-        model: part.unwrap_or_else(|| whole.model.clone()),
-        ..whole
-    };
-    Ok((part(old, one.ok()), part(new, other.ok())))
 }

@@ -1,16 +1,16 @@
 //! `fcproto generate`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use fc_codegen::emit::generate;
 use fc_codegen::output::{Plan, plan};
 use fc_codegen::package::items::clashes;
-use fc_codegen::target::{FILE, part};
+use fc_codegen::target::part;
 use fc_spec::model::{Dump, Model};
 
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
-use crate::project::{Project, is_there};
+use crate::project::Project;
 use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 use crate::versions::Shelf;
@@ -137,7 +137,7 @@ fn make(
 ) -> Result<Status, Failure> {
     let root = options.out.as_ref().unwrap_or(&project.root);
     if options.out.is_some() {
-        check_apart(root, &project.root)?;
+        project.check_apart(root)?;
     }
     let targets = project.targets.only(&options.only)?;
     let part = part(model, options.audience.as_deref())?;
@@ -169,24 +169,6 @@ fn make(
     plan.write()?;
     print::done(&(read + &summary(&plan)))?;
     Ok(Status::Fine)
-}
-
-/// Refuses a project as the directory for `--out`, because the manifest there would let its own files be removed.
-fn check_apart(out: &Path, root: &Path) -> Result<(), Failure> {
-    let is_root = match (out.canonicalize(), root.canonicalize()) {
-        (Ok(out), Ok(root)) => out == root,
-        // A directory that does not exist yet is not a project.
-        _ => false,
-    };
-    if is_root || is_there(&out.join(FILE)) {
-        let out = out.display();
-        return Err(said!(
-            "`{out}` 是一个项目；用 --out 指定别的目录",
-            "`{out}` is a project; name another directory with --out"
-        )
-        .into());
-    }
-    Ok(())
 }
 
 fn check(

@@ -2,10 +2,12 @@
 
 use fc_codegen::output::{OutputError, unified};
 use fc_codegen::project::ProjectError;
+use fc_codegen::questions::SelectionError;
 use fc_codegen::target::TargetError;
-use fc_diff::VersionError;
+use fc_diff::{UnknownCode, VersionError};
 use fc_package::PackError;
 use fc_spec::diagnostic::{Faults, Format, render, summary};
+use fc_spec::index::NotDeclared;
 use fc_spec::load::SettleError;
 use fc_spec::model::{DumpError, ProjectionError, Text};
 use fc_spec::retire::RetireError;
@@ -97,13 +99,16 @@ pub fn reason(failure: &(dyn Error + 'static)) -> Text {
     }
     of!(
         DumpError,
+        NotDeclared,
         OutputError,
         ProjectError,
         ProjectionError,
         RetireError,
         ScaffoldError,
+        SelectionError,
         SettleError,
         TargetError,
+        UnknownCode,
         VersionError,
         ClientError,
         InputError,

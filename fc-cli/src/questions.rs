@@ -1,8 +1,8 @@
 //! `fcproto questions`.
 
 use clap::ValueEnum;
-use fc_codegen::questions::{By, List};
-use fc_spec::model::{AnswerKind, Model, Question, Text};
+use fc_codegen::questions::{self, By, List, Selection};
+use fc_spec::model::Model;
 
 use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
@@ -57,7 +57,7 @@ enum Order {
     State,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, ValueEnum)]
 enum State {
     #[value(help = both("等待负责人答复", "Waiting for the owner"))]
     Open,
@@ -80,33 +80,22 @@ enum OutputFormat {
 }
 
 pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
-    if let Some(id) = &options.group
-        && model.group(id).is_none()
-    {
-        let known: Vec<&str> = model.groups.iter().map(|group| group.id.as_str()).collect();
-        let known = Text::listed(known);
-        return Err(said!(
-            "没有分组 `{id}`；分组有：{known}",
-            "there is no group `{id}`; there are {known}",
-            known = known
-        )
-        .into());
-    }
-    let lang = lang();
     let by = match options.by {
         Order::Impact => By::Impact,
         Order::Group => By::Group,
         Order::State => By::State,
     };
-    let list = List::new(model, lang, by, |question| options.wants(question));
-    if list.is_empty() && !options.ids.is_empty() {
-        return Err(said!(
-            "没有问题 {ids}；`fcproto questions --state all --decisions` 列出全部问题",
-            "there is no question {ids}; `fcproto questions --state all --decisions` lists them",
-            ids = Text::listed(&options.ids)
-        )
-        .into());
-    }
+    let selection = Selection {
+        ids: &options.ids,
+        state: match options.state {
+            State::Open => questions::State::Open,
+            State::Confirmed => questions::State::Confirmed,
+            State::All => questions::State::All,
+        },
+        group: options.group.as_deref(),
+        decisions: options.decisions,
+    };
+    let list = List::new(model, lang(), by, &selection)?;
     print::result(&match options.output.format {
         OutputFormat::Text if list.is_empty() => said!("没有问题\n", "no questions\n"),
         OutputFormat::Text if options.ids.is_empty() => list.text(),
@@ -116,23 +105,4 @@ pub fn run(model: &Model, options: &Options) -> Result<Status, Failure> {
         OutputFormat::Csv => list.csv(),
     })?;
     Ok(Status::Fine)
-}
-
-impl Options {
-    /// Returns `true` if the list shows a question. A question that is named by its id is always shown.
-    fn wants(&self, question: &Question) -> bool {
-        if !self.ids.is_empty() {
-            let named = |id: &String| *id == question.id || question.ids.contains(id);
-            return self.ids.iter().any(named);
-        }
-        (match self.state {
-            State::Open => question.is_open(),
-            State::Confirmed => !question.is_open(),
-            State::All => true,
-        }) && (self.decisions || question.kind == AnswerKind::Question)
-            && self
-                .group
-                .as_ref()
-                .is_none_or(|id| question.group.as_ref() == Some(id))
-    }
 }

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use fc_codegen::questions::read;
+use fc_codegen::questions::{Remaining, read};
 use fc_spec::load::{Said, settle};
-use fc_spec::model::{AnswerKind, Confirmation, Fact, Model, Text};
+use fc_spec::model::{Confirmation, Fact, Model, Text};
 
 use crate::lang::{both, counted, in_lang, said};
 use crate::outcome::{Failure, Status};
@@ -176,27 +176,16 @@ pub fn run(mut spec: Spec, options: &Options) -> Result<Status, Failure> {
 
 /// Returns a message about the open questions. It lists those with the same subject.
 fn rest(model: &Model, ids: &[String]) -> String {
-    let asked = model.questions.iter();
-    let asked = asked.filter(|question| question.kind == AnswerKind::Question);
-    let open: Vec<_> = asked
-        .clone()
-        .filter(|question| question.is_open())
-        .collect();
-    let settled = asked.filter(|question| ids.contains(&question.id));
-    let subjects: Vec<_> = settled.map(|question| &question.subject).collect();
-    let same = open
-        .iter()
-        .filter(|question| subjects.contains(&&question.subject));
-    let same: Vec<_> = same.map(|question| question.id.as_str()).collect();
-    let also = match same.as_slice() {
+    let Remaining { open, related } = Remaining::after(model, ids);
+    let also = match related.as_slice() {
         [] => String::new(),
-        same => said!(
-            "，涉及相同内容的有：{same}",
-            "; also open about it: {same}",
-            same = Text::listed(same)
+        related => said!(
+            "，涉及相同内容的有：{related}",
+            "; also open about it: {related}",
+            related = Text::listed(related)
         ),
     };
-    let left = counted(open.len(), "待确认的问题", "open question");
+    let left = counted(open, "待确认的问题", "open question");
     said!(
         "还有 {left}{also}\n运行 `fcproto generate`，并重读前后文字中与它有关的说明\n",
         "{left} left{also}\nrun `fcproto generate`, and check the texts that mention it\n"

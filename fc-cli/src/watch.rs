@@ -10,10 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::{Duration, Instant};
 
-use fc_codegen::project::read_settings;
-use fc_codegen::target::FILE;
-use fc_spec::diagnostic::Faults;
-use fc_spec::syntax::read_dir;
+use fc_codegen::input::{FileChange, Input};
 use notify::event::AccessKind;
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher as _};
 
@@ -76,7 +73,7 @@ pub fn run(
         let now = Input::read(&root, &spec);
         if last.as_ref() != Some(&now) {
             if let Some(last) = &last {
-                print::done(&now.since(last))?;
+                print::done(&changed(&now.changes_since(last)))?;
             }
             if let Err(failure) = work(&dirs) {
                 if print::is_closed_pipe(failure.as_ref()) {
@@ -153,53 +150,16 @@ impl Watched {
     }
 }
 
-/// The input of the generator at one time.
-#[derive(PartialEq)]
-struct Input {
-    /// Paths and texts, sorted by path.
-    files: Vec<(String, String)>,
-    /// The codes of errors in reading.
-    faults: Vec<&'static str>,
-}
-
-impl Input {
-    fn read(root: &Path, spec: &Path) -> Self {
-        let mut faults = Faults::new();
-        let sources = read_dir(root, spec, &mut faults);
-        let files = sources.iter();
-        let mut files: Vec<_> = files
-            .map(|(_, file)| (file.path.clone(), file.text.clone()))
-            .collect();
-        if let Ok(Some(text)) = read_settings(root) {
-            files.push((FILE.to_owned(), text));
-        }
-        files.sort();
-        Self {
-            files,
-            faults: faults.iter().map(|it| it.code.as_str()).collect(),
-        }
-    }
-
-    /// Returns the names of the files that differ from `last`.
-    fn since(&self, last: &Self) -> String {
-        let lacks = |input: &Self, path: &str| !input.files.iter().any(|(it, _)| it == path);
-        let new = self.files.iter().filter(|file| !last.files.contains(file));
-        let new = new.map(|(path, _)| {
-            let what = if lacks(last, path) {
-                both("新增", "new")
-            } else {
-                both("改动", "changed")
-            };
-            (what, path)
-        });
-        let gone = last.files.iter();
-        let gone = gone.map(|(path, _)| (both("删除", "gone"), path));
-        let all: Vec<_> = new
-            .chain(gone.filter(|(_, path)| lacks(self, path)))
-            .collect();
-        let lines = all.iter();
-        let lines = lines.map(|(what, path)| said!("{what} {path}\n", "{what:<10} {path}\n"));
-        let indent = both("     ", "           ");
-        "\n".to_owned() + &print::first(lines, indent)
-    }
+/// Returns a line for each changed file, up to a limit.
+fn changed(changes: &[(FileChange, &str)]) -> String {
+    let lines = changes.iter().map(|(change, path)| {
+        let what = match change {
+            FileChange::Added => both("新增", "new"),
+            FileChange::Modified => both("改动", "changed"),
+            FileChange::Removed => both("删除", "gone"),
+        };
+        said!("{what} {path}\n", "{what:<10} {path}\n")
+    });
+    let indent = both("     ", "           ");
+    "\n".to_owned() + &print::first(lines, indent)
 }

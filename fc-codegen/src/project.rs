@@ -49,6 +49,8 @@ pub enum ProjectError {
     Unreadable(Text),
     /// `fc.yaml` has errors.
     Targets(TargetError),
+    /// The output directory is a project.
+    OutputIsProject(PathBuf),
 }
 
 impl ProjectError {
@@ -73,6 +75,13 @@ impl ProjectError {
             }
             Self::Unreadable(reason) => reason.clone(),
             Self::Targets(error) => error.text(),
+            Self::OutputIsProject(out) => {
+                let out = out.display();
+                text!(
+                    "`{out}` 是一个项目；用 --out 指定别的目录",
+                    "`{out}` is a project; name another directory with --out"
+                )
+            }
         }
     }
 }
@@ -86,13 +95,11 @@ impl ProjectDirs {
     ///
     /// [`ProjectError`] if there is no project.
     pub fn find_root(&self) -> Result<PathBuf, ProjectError> {
-        match &self.root {
-            Some(root) => named(root),
-            None => {
-                let here = std::env::current_dir().map_err(ProjectError::NoCurrentDirectory)?;
-                self.nearest(&here)
-            }
+        if let Some(root) = &self.root {
+            return named(root);
         }
+        let here = std::env::current_dir().map_err(ProjectError::NoCurrentDirectory)?;
+        self.nearest(&here)
     }
 
     /// Returns the nearest project's directory, from a directory upwards.
@@ -184,6 +191,23 @@ impl Project {
         let path = path.strip_prefix(&self.root).unwrap_or(path);
         let is_of_spec = path.strip_prefix(&self.spec).is_ok_and(is_spec_file);
         path.to_str().filter(|_| is_of_spec)
+    }
+
+    /// Refuses a project as the directory for output, because the manifest there would let its own files be removed.
+    ///
+    /// # Errors
+    ///
+    /// [`ProjectError::OutputIsProject`].
+    pub fn check_apart(&self, out: &Path) -> Result<(), ProjectError> {
+        let is_root = match (out.canonicalize(), self.root.canonicalize()) {
+            (Ok(out), Ok(root)) => out == root,
+            // A directory that does not exist yet is not a project.
+            _ => false,
+        };
+        if is_root || is_there(&out.join(FILE)) {
+            return Err(ProjectError::OutputIsProject(out.to_owned()));
+        }
+        Ok(())
     }
 
     /// Writes the files of the spec that have changed, and returns their paths.

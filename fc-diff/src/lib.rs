@@ -15,6 +15,7 @@
 //! waivers. Waivers belong to a comparison and not to the protocol.
 
 mod changelog;
+mod explanation;
 mod file_diff;
 mod finding;
 mod git;
@@ -32,6 +33,7 @@ mod version;
 mod waive;
 
 pub use changelog::{section, with_section};
+pub use explanation::{Explanation, UnknownCode, explain, titles};
 pub use fc_spec::model::Lang;
 pub use file_diff::{FileDiff, FileVersion, file_diff};
 pub use finding::{Deployment, Finding, Senders, Spot};
@@ -40,7 +42,7 @@ pub use project::ProjectSpec;
 pub use render::{Format, render};
 pub use rule::{About, Language, Rule, Wire};
 pub use sunset::gone_early;
-pub use version::{Version, VersionError};
+pub use version::{Version, VersionError, for_audience};
 pub use waive::{Against, waive};
 
 use fc_spec::model::Model;

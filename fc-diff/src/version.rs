@@ -5,7 +5,7 @@ use crate::release::{NoRelease, Number, Releases};
 use fc_spec::diagnostic::Faults;
 use fc_spec::index::{Definitions, definitions};
 use fc_spec::load::Trees;
-use fc_spec::model::{Dump, DumpError, Languages, Model, Text};
+use fc_spec::model::{Dump, DumpError, Languages, Model, ProjectionError, Text};
 use fc_spec::source::Sources;
 use fc_spec::syntax::{is_spec_file, read_dir};
 use fc_spec::{text, text_error};
@@ -202,6 +202,26 @@ impl Version {
             }),
         }
     }
+}
+
+/// Returns both versions without the parts for other audiences. A version that does not know the audience stays whole.
+///
+/// # Errors
+///
+/// [`ProjectionError`] if neither version knows the audience.
+pub fn for_audience(
+    [old, new]: [Version; 2],
+    audience: &str,
+) -> Result<[Version; 2], ProjectionError> {
+    let [of_old, of_new] = [&old, &new].map(|version| version.model.for_audience(audience));
+    if let (Err(_), Err(unknown)) = (&of_old, &of_new) {
+        return Err(unknown.clone());
+    }
+    let part = |whole: Version, part: Result<Model, _>| match part {
+        Ok(model) => Version { model, ..whole },
+        Err(_) => whole,
+    };
+    Ok([part(old, of_old), part(new, of_new)])
 }
 
 /// Reads the files of a spec at a git revision.

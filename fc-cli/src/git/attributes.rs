@@ -1,10 +1,9 @@
 //! The entries of `.gitattributes` that make git call `fcproto`.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 
-use fc_codegen::output::{MANIFEST, generated};
+use fc_codegen::output::{MANIFEST, generated, generated_directory};
 
 use super::{git, parts};
 use crate::outcome::Failure;
@@ -34,7 +33,7 @@ pub fn missing(project: &Project) -> Result<Vec<String>, Failure> {
     let uncovered = values.iter().filter(|(_, value)| *value != DRIVER);
     let mut patterns = BTreeSet::new();
     for (path, _) in uncovered {
-        patterns.insert(match whole(root, path, &generated) {
+        patterns.insert(match generated_directory(root, path, &generated) {
             Some(directory) => format!("/{directory}/**"),
             None => format!("/{path}"),
         });
@@ -55,26 +54,4 @@ fn values<'p>(
     let (triples, _) = said.as_chunks::<3>();
     let of = |[path, _, value]: &[&str; 3]| ((*path).to_owned(), (*value).to_owned());
     Ok(triples.iter().map(of).collect())
-}
-
-/// Returns the outermost directory around a path that contains only generated files.
-fn whole<'p>(root: &Path, path: &'p str, generated: &BTreeSet<String>) -> Option<&'p str> {
-    let ends = path.match_indices('/').map(|(at, _)| at);
-    let mut above = ends.filter_map(|at| path.get(..at));
-    above.find(|directory| is_generated(root, directory, generated))
-}
-
-fn is_generated(root: &Path, directory: &str, generated: &BTreeSet<String>) -> bool {
-    let Ok(entries) = fs::read_dir(root.join(directory)) else {
-        return false;
-    };
-    entries.into_iter().all(|entry| {
-        let Ok(entry) = entry else { return false };
-        let path = format!("{directory}/{}", entry.file_name().to_string_lossy());
-        if entry.file_type().is_ok_and(|it| it.is_dir()) {
-            is_generated(root, &path, generated)
-        } else {
-            generated.contains(&path)
-        }
-    })
 }

@@ -33,6 +33,7 @@ pub use manifest::{MANIFEST, merge_manifests};
 pub use plan::{Plan, StaleFile, plan};
 
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::Path;
 
 /// Returns the paths of the generated files, relative to `root`, each once.
@@ -49,6 +50,34 @@ pub fn generated(root: &Path) -> Result<Vec<String>, OutputError> {
     let manifest = manifest::Manifest::parse(&text).map_err(|why| OutputError::Manifest { why })?;
     let paths: BTreeSet<&str> = manifest.iter().map(|(_, path)| path).collect();
     Ok(paths.into_iter().map(str::to_owned).collect())
+}
+
+/// Returns the outermost directory around a path that contains only generated files. All paths are relative to `root`.
+#[must_use]
+pub fn generated_directory<'p>(
+    root: &Path,
+    path: &'p str,
+    generated: &BTreeSet<String>,
+) -> Option<&'p str> {
+    let ends = path.match_indices('/').map(|(at, _)| at);
+    let mut above = ends.filter_map(|at| path.get(..at));
+    above.find(|directory| has_only(root, directory, generated))
+}
+
+/// Returns `true` if a directory contains only these files.
+fn has_only(root: &Path, directory: &str, files: &BTreeSet<String>) -> bool {
+    let Ok(entries) = fs::read_dir(root.join(directory)) else {
+        return false;
+    };
+    entries.into_iter().all(|entry| {
+        let Ok(entry) = entry else { return false };
+        let path = format!("{directory}/{}", entry.file_name().to_string_lossy());
+        if entry.file_type().is_ok_and(|it| it.is_dir()) {
+            has_only(root, &path, files)
+        } else {
+            files.contains(&path)
+        }
+    })
 }
 
 /// Replaces the text of a spec file atomically. `path` is relative to `root`.

@@ -1,9 +1,11 @@
 //! Questions for the owner of the protocol: lists for people, and a sheet that the owner fills in.
 
 mod list;
+mod selection;
 mod sheet;
 
 pub use crate::emit::markdown::Lang;
+pub use selection::{Remaining, Selection, SelectionError, State};
 pub use sheet::{SheetError, read};
 
 use crate::emit::markdown::{Book, Page, TabsByOperation};
@@ -29,15 +31,23 @@ pub enum By {
 }
 
 impl<'m> List<'m> {
-    /// Returns the questions for which `wanted` is true.
-    #[must_use]
-    pub fn new(model: &'m Model, lang: Lang, by: By, wanted: impl Fn(&Question) -> bool) -> Self {
-        Self {
+    /// Returns the selected questions.
+    ///
+    /// # Errors
+    ///
+    /// [`SelectionError`] if the spec does not have the group, or none of the named questions.
+    pub fn new(
+        model: &'m Model,
+        lang: Lang,
+        by: By,
+        selection: &Selection<'_>,
+    ) -> Result<Self, SelectionError> {
+        Ok(Self {
             book: Book::new(model, TabsByOperation::new()),
-            questions: model.questions.iter().filter(|it| wanted(it)).collect(),
+            questions: selection.of(model)?,
             lang,
             by,
-        }
+        })
     }
 
     /// Returns the number of questions.

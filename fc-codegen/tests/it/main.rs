@@ -35,6 +35,7 @@ mod json_schema;
 mod load_property;
 mod names;
 mod output;
+mod project;
 mod rooms;
 mod target;
 mod touch;

@@ -55,6 +55,7 @@ const CRATES: &[Crate] = &[
             "codes",
             "output",
             "project",
+            "input",
             "questions",
             "inspect",
         ],
@@ -102,6 +103,7 @@ const CRATES: &[Crate] = &[
         rooms: &[
             "rule",
             "rules",
+            "explanation",
             "finding",
             "release",
             "changelog",

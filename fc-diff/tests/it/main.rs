@@ -11,8 +11,10 @@
 mod declared;
 mod edits;
 mod execution;
+mod file_diff;
 mod history;
 mod moves;
+mod next_release;
 mod packages;
 mod release;
 mod sunset;

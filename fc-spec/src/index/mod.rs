@@ -3,6 +3,7 @@
 //! It reads each file separately, also in specs with errors, and keeps the results of unchanged files.
 
 mod definitions;
+mod located;
 mod references;
 
 use crate::load::Trees;
@@ -14,6 +15,7 @@ pub use crate::language::{Occurrence, OtherKey, Reference, Role, occurrence_at, 
 use definitions::FileDefinitions;
 pub(crate) use definitions::entry_at;
 pub use definitions::{DefId, DefSite, Definitions, described};
+pub use located::{Located, NotDeclared, locate};
 use references::FileReferences;
 pub use references::References;
 
