@@ -30,9 +30,7 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
         None => lang.pick("未发布", "Unreleased").to_owned(),
     };
     let [old, new] = match &options.audience {
-        Some(audience) => {
-            for_audience([old, new], audience).map_err(|unknown| unknown.to_string())?
-        }
+        Some(audience) => for_audience([old, new], audience)?,
         None => [old, new],
     };
     let findings = shelf.compare(&old, &new, &today(None))?;
