@@ -123,7 +123,7 @@ impl PackError {
             Self::TooLarge(path) => {
                 let (path, most) = (path.display(), LONGEST >> 20);
                 text!(
-                    "`{path}`超过 {most} MiB",
+                    "`{path}` 超过 {most} MiB",
                     "`{path}` is larger than {most} MiB"
                 )
             }

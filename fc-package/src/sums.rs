@@ -37,10 +37,8 @@ pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, P
         .map(|(sum, path)| (path.to_owned(), sum.to_owned()))
         .collect();
     let prefix = format!("{language}/");
-    let is_old = |path: &str| path.starts_with(&prefix) && !path.split('/').any(|it| it == "..");
-    for path in sums.keys().filter(|path| is_old(path)) {
-        remove(out, path)?;
-    }
+    let mut old: Vec<_> = sums.keys().cloned().collect();
+    old.retain(|path| path.starts_with(&prefix) && !path.split('/').any(|it| it == ".."));
     sums.retain(|path, _| !path.starts_with(&prefix));
     let mut listed = Vec::new();
     for path in files::below(made)? {
@@ -53,6 +51,9 @@ pub fn replace(out: &Path, language: &str, made: &Path) -> Result<Vec<String>, P
         sums.insert(path.clone(), of_file(&from)?);
         fs::rename(&from, &to).map_err(unwritable(&to))?;
         listed.push(path);
+    }
+    for path in old.iter().filter(|path| !listed.contains(path)) {
+        remove(out, path)?;
     }
     let lines = sums.iter().map(|(path, sum)| format!("{sum}  {path}\n"));
     files::write(&list, lines.collect::<String>())?;
