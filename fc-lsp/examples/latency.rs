@@ -14,16 +14,16 @@
 )]
 
 use fc_codegen::check::check;
+use fc_codegen::project::ProjectDirs;
 use fc_codegen::target::Targets;
-use fc_lsp::{Host, Project, serve};
+use fc_lsp::serve;
 use fc_spec::diagnostic::Faults;
-use fc_spec::model::Text;
 use fc_spec::source::Sources;
 use fc_spec::syntax::read_dir;
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// The number of groups, and of commands in each.
@@ -187,22 +187,6 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-struct Here(PathBuf);
-
-impl Host for Here {
-    fn find(&self, _: &Path) -> Result<Project, Text> {
-        Ok(Project::new(
-            self.0.clone(),
-            "spec".into(),
-            Targets::default(),
-        ))
-    }
-
-    fn today(&self) -> String {
-        "2026-01-01".to_owned()
-    }
-}
-
 struct Client {
     connection: Connection,
     root: String,
@@ -216,8 +200,11 @@ struct Client {
 impl Client {
     fn start(root: &Path) -> Self {
         let (connection, server) = Connection::memory();
-        let host = Here(root.to_owned());
-        std::thread::spawn(move || serve(&server, &host));
+        let dirs = ProjectDirs {
+            root: Some(root.to_owned()),
+            spec: None,
+        };
+        std::thread::spawn(move || serve(&server, &dirs, || "2026-01-01".to_owned()));
         let mut client = Self {
             connection,
             root: format!("file://{}", root.display()),

@@ -43,7 +43,7 @@ pub use formatting::formatting;
 pub use hover::hover;
 pub use lens::lenses;
 pub use position::Encoding;
-pub use project::{Host, Project};
+pub use project::Project;
 pub use references::references;
 pub use rename::{prepare_rename, rename};
 pub use serve::{ServeError, serve};

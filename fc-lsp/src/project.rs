@@ -1,5 +1,6 @@
-//! The project of the edited spec, and the interface of the program that finds it.
+//! The project of the edited spec.
 
+use fc_codegen::project::{self, ProjectDirs};
 use fc_codegen::target::{FILE, Targets};
 use fc_diff::release::{DIRECTORY, Releases};
 use fc_diff::{Packages, Version};
@@ -8,20 +9,9 @@ use fc_spec::index::Definitions;
 use fc_spec::lint::{self, faults, lint, waive};
 use fc_spec::model::{Model, Text};
 use fc_spec::source::Sources;
-use std::path::{Path, PathBuf};
+use fc_spec::text;
+use std::path::{Path, PathBuf, absolute};
 use std::sync::OnceLock;
-
-/// The functions that the server needs from its host program.
-pub trait Host {
-    /// Returns the project at a directory or above it.
-    ///
-    /// # Errors
-    /// A sentence for the user if there is no project.
-    fn find(&self, directory: &Path) -> Result<Project, Text>;
-
-    /// Returns the day that decides whether waivers are expired, `YYYY-MM-DD`.
-    fn today(&self) -> String;
-}
 
 /// A project.
 #[derive(Debug)]
@@ -56,6 +46,17 @@ pub struct Release {
 }
 
 impl Project {
+    /// Returns the named project, or the nearest one upwards from a directory.
+    ///
+    /// # Errors
+    /// A sentence for the user if there is no project.
+    pub fn find(dirs: &ProjectDirs, directory: &Path) -> Result<Self, Text> {
+        let found = project::Project::find_from(dirs, directory).map_err(|error| error.text())?;
+        // Clients name files by absolute paths, independent of the server's directory.
+        let root = absolute(&found.root).map_err(|error| text!("{error}", "{error}"))?;
+        Ok(Self::new(root, found.spec, found.targets))
+    }
+
     /// Creates a project and reads its lint settings.
     #[must_use]
     pub fn new(root: PathBuf, spec: PathBuf, targets: Targets) -> Self {

@@ -4,12 +4,13 @@ use crate::diagnostics::diagnostics;
 use crate::dispatch::{answer, capabilities, refusal, waits};
 use crate::event::Event;
 use crate::lens;
-use crate::project::Host;
+use crate::project::Project;
 use crate::settings::Settings;
 use crate::snapshot::Snapshot;
 use crate::uri;
 use crate::worker::Worker;
 use crate::workspace::Workspace;
+use fc_codegen::project::ProjectDirs;
 use fc_spec::model::Text;
 use gen_lsp_types as lsp;
 use lsp::Notification as _;
@@ -42,12 +43,17 @@ impl std::error::Error for ServeError {}
 
 /// Serves a client until it exits. Returns `true` if the client asked for a shutdown first, as the protocol requires.
 ///
-/// The loop takes all waiting messages at once and never blocks on a check. A worker thread checks the newest state of
+/// `dirs` has the directories that the user names, and `today` returns the day that decides whether waivers are expired,
+/// `YYYY-MM-DD`. The loop takes all waiting messages at once and never blocks on a check. A worker thread checks the newest state of
 /// the files and answers the requests that need a check.
 ///
 /// # Errors
 /// [`ServeError`] if the initialization fails.
-pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeError> {
+pub fn serve(
+    connection: &Connection,
+    dirs: &ProjectDirs,
+    today: impl Fn() -> String,
+) -> Result<bool, ServeError> {
     let (id, params) = connection
         .initialize_start()
         .map_err(|error| ServeError(error.to_string()))?;
@@ -68,7 +74,8 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeErro
     let (sender, events) = sync_channel(WAITING);
     let mut server = Server {
         connection,
-        host,
+        dirs,
+        today: &today,
         worker: Worker::start(sender.clone()),
         workspace: None,
         settings,
@@ -97,7 +104,8 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<bool, ServeErro
 
 struct Server<'h> {
     connection: &'h Connection,
-    host: &'h dyn Host,
+    dirs: &'h ProjectDirs,
+    today: &'h dyn Fn() -> String,
     worker: Worker,
     workspace: Option<Workspace>,
     settings: Arc<Settings>,
@@ -243,9 +251,9 @@ impl Server<'_> {
     }
 
     fn find(&mut self, directory: &Path) -> Result<(), Text> {
-        let project = self.host.find(directory)?;
+        let project = Project::find(self.dirs, directory)?;
         let settings = Arc::clone(&self.settings);
-        self.workspace = Some(Workspace::new(project, settings, self.host.today()));
+        self.workspace = Some(Workspace::new(project, settings, (self.today)()));
         self.is_dirty = true;
         Ok(())
     }
@@ -284,7 +292,7 @@ impl Server<'_> {
             .filter_map(|it| uri::to_path(it.uri.as_ref()));
         if files.any(|file| workspace.project().is_about(&file)) {
             // The project stays unchanged while `fc.yaml` cannot be read.
-            if let Ok(project) = self.host.find(&workspace.project().root.clone()) {
+            if let Ok(project) = Project::find(self.dirs, &workspace.project().root) {
                 workspace.set_project(project);
             }
         } else {

@@ -9,6 +9,7 @@ pub mod usage;
 mod wrap;
 
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
+use serde::Serialize;
 
 use crate::args::Args;
 use crate::lang::both;
@@ -29,7 +30,7 @@ pub struct Help {
 }
 
 /// A part of the details. In texts, code is between backticks.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub enum Part {
     /// A paragraph.
     Text(&'static str),
