@@ -1,7 +1,6 @@
 //! `fcproto fmt`.
 
 use std::fmt::Write as _;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use fc_codegen::output::replace_spec_file;
@@ -12,9 +11,9 @@ use fc_spec::syntax::{limits, read_bytes, read_dir, read_files};
 
 use crate::lang::{both, counted, said};
 use crate::outcome::{Failure, Status};
-use crate::print;
 use crate::project::Project;
 use crate::project_dirs::ProjectDirs;
+use crate::{input, print};
 
 /// Options of `fcproto fmt`.
 #[derive(Debug, Default, clap::Args)]
@@ -61,7 +60,7 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
     }
     let mut mark = "";
     let (root, sources) = if from_stdin {
-        let bytes = stdin()?;
+        let bytes = input::stdin(limits::FILE_BYTES)?;
         if bytes.starts_with(BYTE_ORDER_MARK.as_bytes()) {
             mark = BYTE_ORDER_MARK;
         }
@@ -114,23 +113,6 @@ pub fn run(dirs: &ProjectDirs, options: &Options) -> Result<Status, Failure> {
 }
 
 const BYTE_ORDER_MARK: &str = "\u{feff}";
-
-/// Reads standard input, up to one byte beyond the limit of a file.
-fn stdin() -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    // The extra byte shows that the input is too long.
-    let limit = u64::try_from(limits::FILE_BYTES).unwrap_or(u64::MAX);
-    std::io::stdin()
-        .take(limit.saturating_add(1))
-        .read_to_end(&mut bytes)
-        .map_err(|error| {
-            said!(
-                "无法读取标准输入：{error}",
-                "cannot read standard input: {error}"
-            )
-        })?;
-    Ok(bytes)
-}
 
 struct Run<'a> {
     root: &'a Path,

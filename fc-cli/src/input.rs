@@ -60,11 +60,23 @@ pub fn file_if_there(path: &Path) -> Result<Option<String>, Failure> {
     is_there(path).then(|| file(path)).transpose()
 }
 
+/// Reads standard input, up to one byte beyond a limit.
+pub fn stdin(most: usize) -> Result<Vec<u8>, Failure> {
+    let most = u64::try_from(most).unwrap_or(u64::MAX);
+    let read = beyond(most, io::stdin());
+    read.map_err(|error| cannot(&text!("标准输入", "standard input"), &error))
+}
+
+/// Reads bytes up to a limit and one more, which shows that the input is too large.
+fn beyond(most: u64, input: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    input.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// Reads bytes up to a limit, or returns `None` if there are more.
 pub fn up_to(most: u64, input: impl Read) -> io::Result<Option<Vec<u8>>> {
-    let mut bytes = Vec::new();
-    // The extra byte shows that the input is too large.
-    input.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    let bytes = beyond(most, input)?;
     let fits = u64::try_from(bytes.len()).is_ok_and(|read| read <= most);
     Ok(fits.then_some(bytes))
 }

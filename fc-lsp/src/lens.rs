@@ -139,7 +139,7 @@ fn breaks(snapshot: &Snapshot, file: FileId) -> Vec<CodeLens> {
     }
     let title = lang.pick("不兼容", "breaks");
     let lenses = broken.into_iter().map(|(key, messages)| {
-        let title = format!("{title} {}", release.number);
+        let title = format!("{title} {}", release.name);
         said(snapshot, key, title, Some(messages.join("\n")))
     });
     lenses.collect()

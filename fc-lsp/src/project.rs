@@ -23,7 +23,7 @@ pub struct Project {
     /// The targets that the project generates.
     pub targets: Targets,
     lint: Lint,
-    releases: OnceLock<Vec<Release>>,
+    releases: OnceLock<Vec<Version>>,
 }
 
 /// The lint settings of the project.
@@ -34,15 +34,6 @@ pub struct Lint {
     pub files: Sources,
     /// The diagnostics of these files.
     pub faults: Faults,
-}
-
-/// A released version of the spec.
-#[derive(Debug)]
-pub struct Release {
-    /// The number, such as `2024.09`.
-    pub number: String,
-    /// The model.
-    pub model: Model,
 }
 
 impl Project {
@@ -98,16 +89,16 @@ impl Project {
         faults(&findings, settings, places)
     }
 
-    /// Returns the last release if it is readable. The first call reads the releases.
+    /// Returns the last release, whose name is its number, if it is readable. The first call reads the releases.
     #[must_use]
-    pub fn release(&self) -> Option<&Release> {
+    pub fn release(&self) -> Option<&Version> {
         self.releases().first()
     }
 
     /// Returns the readable releases, the last one first. Returns none if the last release is unreadable. The first call
     /// reads them.
     #[must_use]
-    pub fn releases(&self) -> &[Release] {
+    pub fn releases(&self) -> &[Version] {
         self.releases
             .get_or_init(|| self.read_releases().unwrap_or_default())
     }
@@ -126,16 +117,10 @@ impl Project {
         }
     }
 
-    fn read_releases(&self) -> Option<Vec<Release>> {
+    fn read_releases(&self) -> Option<Vec<Version>> {
         let releases = Releases::beside(&self.root.join(&self.spec)).ok()?;
         let mut numbers: Vec<String> = releases.numbers().map(ToString::to_string).collect();
-        let read = |number: String| {
-            let version = Version::read(&number, &self.root, &self.spec).ok()?;
-            Some(Release {
-                number,
-                model: version.model,
-            })
-        };
+        let read = |number: String| Version::read(&number, &self.root, &self.spec).ok();
         let last = read(numbers.pop()?)?;
         let earlier = numbers.into_iter().rev().filter_map(read);
         Some(std::iter::once(last).chain(earlier).collect())

@@ -106,7 +106,7 @@ impl State {
             else {
                 return Vec::new();
             };
-            let earlier = earlier.iter().map(|it| (it.number.as_str(), &it.model));
+            let earlier = earlier.iter().map(|it| (it.name.as_str(), &it.model));
             let packages = self.project.packages();
             let mut findings = diff_since(earlier, &release.model, model, packages);
             waive(&mut findings, &model.waivers, &self.today, Against::Release);
