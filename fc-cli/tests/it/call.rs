@@ -155,6 +155,8 @@ fn a_robot_that_is_not_there_gives_status_4() {
         .fc(&["call", "get_level", "--to", &address])
         .expect(4);
     assert!(run.stderr.contains("cannot connect"), "{run:?}");
+    let run = interactive(&project, &address, "get_level\n").expect(4);
+    assert!(run.stderr.contains("cannot connect"), "{run:?}");
 }
 
 #[test]
@@ -201,32 +203,30 @@ fn a_process_is_followed_to_its_end() {
 const SET_LEVEL: &str = "set_level --allow motion data.level=40 data.ratio=0.25 data.armed=true \
     data.label=lamp data.serial=AB data.colours.0.red=1 data.colours.0.green=2 data.phase=dark";
 
+/// Runs lines of an interactive call.
+fn interactive(project: &Project, to: &str, lines: &str) -> Run {
+    let mut run = command(&["call", "--interactive", "--to", to, "--lang", "en"])
+        .current_dir(project.path(""))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command can be run");
+    let mut stdin = run.stdin.take().expect("its input");
+    stdin.write_all(lines.as_bytes()).expect("it reads");
+    drop(stdin);
+    Run::new(&run.wait_with_output().expect("its end"))
+}
+
 #[test]
 fn lines_of_a_pipe_are_calls() {
     let project = Project::new();
     let mock = Robot::mock(&project, &["--pace", "5"]);
-    let mut run = command(&[
-        "call",
-        "--interactive",
-        "--to",
-        &mock.commands,
-        "--lang",
-        "en",
-    ])
-    .current_dir(project.path(""))
-    .stdin(Stdio::piped())
-    .stdout(Stdio::piped())
-    .stderr(Stdio::piped())
-    .spawn()
-    .expect("the command can be run");
     let lines = format!(
         "get_level\n\nprobe\nprobe --allow motion\nlower\n{SET_LEVEL} --follow\n--nothing\nlabel='\n\
          get_level --to elsewhere\nset_level --json @-\n--list\n"
     );
-    let mut stdin = run.stdin.take().expect("its input");
-    stdin.write_all(lines.as_bytes()).expect("it reads");
-    drop(stdin);
-    let run = Run::new(&run.wait_with_output().expect("its end")).expect(2);
+    let run = interactive(&project, &mock.commands, &lines).expect(2);
     for part in [
         "get_level  0 fine",
         "probe  0 fine",

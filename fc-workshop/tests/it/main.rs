@@ -25,6 +25,7 @@ mod scenarios;
 mod sessions;
 mod support;
 mod table;
+mod transcript;
 #[cfg(feature = "view")]
 mod view;
 #[path = "../../../fc-spec/tests/it/yaml_as_json.rs"]
