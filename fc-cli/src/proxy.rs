@@ -147,7 +147,10 @@ fn seed(seed: u64, format: OutputFormat) -> String {
 
 fn show(model: &Model, format: OutputFormat, event: &Event<'_, '_>) -> io::Result<()> {
     let line = match (event, format) {
-        (Event::Unreachable(..), _) => return print::error(&proxy::line(event, model, lang())),
+        (Event::Unreachable(..), _) => {
+            let _ = print::error(&proxy::line(event, model, lang()));
+            return Ok(());
+        }
         (_, OutputFormat::Json) => proxy::json_line(event),
         (_, OutputFormat::Text) => proxy::line(event, model, lang()),
     };

@@ -214,10 +214,14 @@ fn show(
             print::result(&transcript.pushed(reflector, operation, frame))
         }
         Event::Times(times) => print::result(&transcript.times(times.clone())),
-        Event::Invalid(error) => print::error(&said!(
-            "响应不合规范：{error}",
-            "the response breaks the spec: {error}"
-        )),
+        Event::Invalid(error) => {
+            // Without standard error, the exit status is the only signal.
+            let _ = print::error(&said!(
+                "响应不合规范：{error}",
+                "the response breaks the spec: {error}"
+            ));
+            Ok(())
+        }
     }
 }
 
