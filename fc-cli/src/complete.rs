@@ -9,7 +9,7 @@ use fc_workshop::complete::{complete, complete_nested};
 
 use crate::help::described;
 use crate::lang::lang;
-use crate::print;
+use crate::progress;
 use crate::project_dirs::ProjectDirs;
 use crate::spec::Spec;
 
@@ -89,7 +89,7 @@ impl Line {
             spec: self.get("spec"),
         };
         // The terminal shows the line that is being typed.
-        print::quiet(true);
+        progress::quiet(true);
         Spec::read(&dirs).ok()?.model
     }
 

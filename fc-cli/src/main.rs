@@ -70,7 +70,7 @@ fn main() -> ExitCode {
         Err(error) => return help::usage::told(error),
     };
     args.color.apply();
-    print::quiet(args.quiet);
+    progress::quiet(args.quiet);
     let status = run(&args).unwrap_or_else(|failure| {
         if print::is_closed_pipe(failure.as_ref()) {
             // The reader of the output has closed it, so a message would have no reader.

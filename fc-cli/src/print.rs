@@ -21,7 +21,6 @@ use crate::lang::{in_lang, lang, said};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::builder::styling::{AnsiColor, Style};
 
@@ -38,22 +37,9 @@ pub fn result(text: &str) -> io::Result<()> {
     stdout.flush()
 }
 
-/// `true` with `--quiet`.
-static QUIET: AtomicBool = AtomicBool::new(false);
-
-/// Makes [`done`] silent.
-pub fn quiet(quiet: bool) {
-    QUIET.store(quiet, Ordering::Relaxed);
-}
-
-/// Returns `true` if [`done`] is silent.
-pub fn is_quiet() -> bool {
-    QUIET.load(Ordering::Relaxed)
-}
-
-/// Prints a success message.
+/// Prints a success message, unless the run is quiet.
 pub fn done(text: &str) -> io::Result<()> {
-    if is_quiet() {
+    if progress::is_quiet() {
         return Ok(());
     }
     result(text)

@@ -4,6 +4,7 @@
 //! other output.
 
 use std::io::{IsTerminal as _, Write as _, stderr};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -15,6 +16,19 @@ const PACE: Duration = Duration::from_millis(200);
 
 /// Erases the line on every terminal.
 const ERASE: &[u8] = b"\r\x1b[K";
+
+/// `true` with `--quiet`.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Hides the line, and success messages.
+pub fn quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Returns `true` if the run shows neither progress nor success.
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
 
 struct Line {
     /// The current work and its start time.
@@ -41,7 +55,7 @@ pub fn doing(what: &'static str) {
         .iter()
         .any(|it| std::env::var_os(it).is_some());
     let is_dumb = std::env::var_os("TERM").is_none_or(|term| term == "dumb");
-    if crate::print::is_quiet() || unread || is_dumb || !stderr().is_terminal() {
+    if is_quiet() || unread || is_dumb || !stderr().is_terminal() {
         return;
     }
     let mut line = line();

@@ -13,7 +13,7 @@ use crate::lang::said;
 use crate::outcome::{Failure, Status};
 use crate::project::{Project, is_there};
 use crate::project_dirs::ProjectDirs;
-use crate::{check, fmt, generate, print};
+use crate::{check, fmt, generate, progress};
 
 pub fn run(dirs: &ProjectDirs) -> Result<Status, Failure> {
     let project = Project::find(dirs)?;
@@ -30,7 +30,7 @@ pub fn run(dirs: &ProjectDirs) -> Result<Status, Failure> {
         root: Some(root),
         spec: dirs.spec.clone(),
     };
-    print::quiet(true);
+    progress::quiet(true);
     let status = fmt::run(&there, &fmt::Options::checking())?;
     if status != Status::Fine {
         return Ok(status);
