@@ -7,7 +7,7 @@ use minijinja::{Environment, Error, context};
 use serde::Serialize;
 
 use super::{ArgumentHelp, Part, arguments, described, of, terminal, usage};
-use crate::lang::{both, said};
+use crate::lang::{both, lang, said};
 use crate::outcome::{Failure, Status};
 use crate::print;
 
@@ -37,8 +37,8 @@ fn page() -> Result<String, Error> {
     let mut environment = Environment::new();
     environment.set_syntax(syntax.build()?);
     environment.add_filter("cell", cell);
-    let template = both(include_str!("page.zh.md.j2"), include_str!("page.md.j2"));
-    environment.add_template("page", template)?;
+    environment.add_function("t", |zh: String, en: String| lang().pick(zh, en));
+    environment.add_template("page", include_str!("page.md.j2"))?;
     environment.get_template("page")?.render(context! {
         program => Value::from(Serde(program)),
         statuses,

@@ -3,8 +3,6 @@
 use crate::support::robot::Robot;
 use crate::support::{Project, Run, command};
 use serde_json::{Value, json};
-use std::io::Write as _;
-use std::process::Stdio;
 
 /// Arguments, exit status, and strings in the output or the errors.
 type Case = (&'static [&'static str], i32, &'static [&'static str]);
@@ -205,17 +203,8 @@ const SET_LEVEL: &str = "set_level --allow motion data.level=40 data.ratio=0.25 
 
 /// Runs lines of an interactive call.
 fn interactive(project: &Project, to: &str, lines: &str) -> Run {
-    let mut run = command(&["call", "--interactive", "--to", to, "--lang", "en"])
-        .current_dir(project.path(""))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the command can be run");
-    let mut stdin = run.stdin.take().expect("its input");
-    stdin.write_all(lines.as_bytes()).expect("it reads");
-    drop(stdin);
-    Run::new(&run.wait_with_output().expect("its end"))
+    let mut command = command(&["call", "--interactive", "--to", to, "--lang", "en"]);
+    Run::with_input(command.current_dir(project.path("")), lines)
 }
 
 #[test]

@@ -2,22 +2,10 @@
 
 use crate::support::{Project, Run, command};
 use serde_json::Value;
-use std::io::Write as _;
-use std::process::Stdio;
 
 /// Runs the command in a project with `input` on standard input.
 fn piped(project: &Project, args: &[&str], input: &[u8]) -> Run {
-    let mut child = command(args)
-        .current_dir(project.path(""))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the command can be run");
-    let mut stdin = child.stdin.take().expect("a pipe");
-    stdin.write_all(input).expect("it reads all");
-    drop(stdin);
-    Run::new(&child.wait_with_output().expect("it ends"))
+    Run::with_input(command(args).current_dir(project.path("")), input)
 }
 
 fn encoded(project: &Project, args: &[&str]) -> String {

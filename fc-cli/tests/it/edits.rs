@@ -1,7 +1,7 @@
 //! Commands that edit the spec, in projects of `init`. They keep files formatted and keep line ends and byte order
 //! marks.
 
-use crate::support::{Project, Run};
+use crate::support::{Project, Run, command};
 
 const LIGHT: &str = "lamp/spec/commands/light.yaml";
 
@@ -250,19 +250,10 @@ fn release_keeps_line_ends_and_mark_of_changelogs() {
 
 #[test]
 fn standard_input_keeps_its_mark() {
-    use std::io::Write as _;
     let text = format!("{BYTE_ORDER_MARK}group:  {{ id: a, zh: 甲, en: A }}\r\n");
-    let mut child = crate::support::command(&["fmt", "-"])
-        .stdin(std::process::Stdio::piped())
-        .stdout(std::process::Stdio::piped())
-        .spawn()
-        .expect("the command can be run");
-    let mut stdin = child.stdin.take().expect("its input");
-    stdin.write_all(text.as_bytes()).expect("it reads");
-    drop(stdin);
-    let output = child.wait_with_output().expect("its end");
+    let run = Run::with_input(&mut command(&["fmt", "-"]), text);
     let expected = format!("{BYTE_ORDER_MARK}group: {{ id: a, zh: 甲, en: A }}\r\n");
-    assert_eq!(String::from_utf8_lossy(&output.stdout), expected);
+    assert_eq!(run.stdout, expected);
 }
 
 /// The command changes the file and keeps the link to it.

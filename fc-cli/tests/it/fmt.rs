@@ -1,8 +1,6 @@
 //! `fcproto fmt`.
 
-use std::io::Write as _;
 use std::path::Path;
-use std::process::Stdio;
 
 use crate::support::{Project, Run, command};
 
@@ -40,16 +38,7 @@ fn project() -> Project {
 }
 
 fn piped(args: &[&str], text: &str) -> Run {
-    let mut child = command(args)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the command can be run");
-    let mut stdin = child.stdin.take().expect("its input");
-    stdin.write_all(text.as_bytes()).expect("it reads");
-    drop(stdin);
-    Run::new(&child.wait_with_output().expect("its output"))
+    Run::with_input(&mut command(args), text)
 }
 
 #[test]

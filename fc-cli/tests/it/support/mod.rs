@@ -5,8 +5,9 @@ pub mod git;
 pub mod robot;
 
 use std::ffi::OsString;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -85,6 +86,20 @@ impl Run {
             stdout: String::from_utf8(output.stdout.clone()).expect("UTF-8"),
             stderr: String::from_utf8(output.stderr.clone()).expect("UTF-8"),
         }
+    }
+
+    /// Runs a command with this text on standard input.
+    pub fn with_input(command: &mut Command, input: impl AsRef<[u8]>) -> Self {
+        let mut child = command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the command can be run");
+        let mut stdin = child.stdin.take().expect("its input");
+        stdin.write_all(input.as_ref()).expect("it reads");
+        drop(stdin);
+        Self::new(&child.wait_with_output().expect("its end"))
     }
 
     /// Fails the test unless the run ended with this status.
